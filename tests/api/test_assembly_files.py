@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
+from trbdyn.base.shipped import ASSEMBLIES
 from trbdyn.cli import main
-from trbdyn.run.toml_assembly import assembly_from_dict, find_assembly
+from trbdyn.run.toml_assembly import assembly_from_dict
 
-TABLES = tomllib.loads(find_assembly("pair_30310").read_text(encoding="utf-8"))
+TABLES = tomllib.loads(ASSEMBLIES.find("pair_30310").read_text(encoding="utf-8"))
 
 
 def changed(*path: Any, value: Any) -> dict[str, Any]:

@@ -12,9 +12,10 @@ import pytest
 
 import trbdyn as trb
 from trbdyn import Bearing, Cage, InputError, Material, Profile, Ribs, Roller, Simulation
+from trbdyn.base.shipped import CASES
 from trbdyn.cli import main
 from trbdyn.run.case_text import case_text, rounded
-from trbdyn.run.toml_case import case_from_dict, load_case, shipped_cases
+from trbdyn.run.toml_case import case_from_dict, load_case
 
 # number of rollers, half angle of the cup (deg), pitch diameter, diameter and length of the rollers (mm), axial load (N)
 CATALOGUE = {
@@ -268,7 +269,7 @@ def test_materials_act_in_every_contact_of_their_body() -> None:
     assert both.scene.bearing.geometry.pocket_modulus == pytest.approx(stiff)
 
 
-@pytest.mark.parametrize("name", shipped_cases())
+@pytest.mark.parametrize("name", CASES.names())
 def test_case_as_text(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     scene, run = load_case(name)
     assert main(["cases", "--print", name]) == 0

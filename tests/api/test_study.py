@@ -19,9 +19,9 @@ from hypothesis import strategies as st
 
 import trbdyn as trb
 from trbdyn import study
+from trbdyn.base.shipped import CASES
 from trbdyn.cli import main
 from trbdyn.errors import FileError, InputError, StepError, TrbError
-from trbdyn.run.toml_case import find_case
 from trbdyn.study import executors, runner, work
 from trbdyn.study.definition import Base, put, split_path
 from trbdyn.study.gather import unit_of
@@ -502,7 +502,7 @@ class TestCommand:
     def write(self, path: Path, kind: str) -> Path:
         path.write_text(STUDY.format(kind=kind).replace("revolutions = 1e9\n", ""))
         text = path.read_text()
-        case = find_case("rig_30310").read_text().replace("revolutions = 50.0", "")
+        case = CASES.find("rig_30310").read_text().replace("revolutions = 50.0", "")
         (path.parent / "case.toml").write_text(case)
         path.write_text(text.replace('case = "rig_30310"', 'case = "case.toml"'))
         return path

@@ -9,6 +9,7 @@ import pytest
 
 import trbdyn as trb
 from trbdyn import cases
+from trbdyn.base.shipped import CASES
 from trbdyn.cli import main
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.bearing import Bearing
@@ -19,7 +20,7 @@ from trbdyn.model.pocket_shapes import drafted_pocket, relieved_pocket
 from trbdyn.model.scene import Scene, Start
 from trbdyn.run.case_text import case_text
 from trbdyn.run.options import RunOptions
-from trbdyn.run.toml_case import case_from_dict, find_case, load_case, shipped_cases
+from trbdyn.run.toml_case import case_from_dict, load_case
 
 BASE = '[bearing]\ncase = "30310"\n{bearing}\n[scene]\nspeed_rpm = 3000\naxial_load = 4930\n'
 
@@ -30,10 +31,10 @@ def parse(extra: str = "", bearing: str = "") -> tuple[Scene, RunOptions]:
 
 class TestShipped:
     def test_names(self) -> None:
-        assert set(shipped_cases()) == {"rig_30310", "bearing_32216", "bearing_nj210"}
-        assert find_case("rig_30310") == find_case("rig_30310.toml")
+        assert set(CASES.names()) == {"rig_30310", "bearing_32216", "bearing_nj210"}
+        assert CASES.find("rig_30310") == CASES.find("rig_30310.toml")
         with pytest.raises(InputError, match="did you mean 'rig_30310'"):
-            find_case("rig_30130")
+            CASES.find("rig_30130")
 
     def test_rig_30310(self) -> None:
         scene, run = load_case("rig_30310")
@@ -42,11 +43,11 @@ class TestShipped:
         assert (run.revolutions, run.end_time(scene)) == (50.0, pytest.approx(1.0))
 
     def test_bearing_32216(self) -> None:
-        scene, _ = load_case(find_case("bearing_32216"))
+        scene, _ = load_case(CASES.find("bearing_32216"))
         assert scene == cases.scene_32216(speed_rpm=2000)
 
     def test_commented_lines_of_the_rig_are_valid(self) -> None:
-        lines = find_case("rig_30310").read_text().splitlines()
+        lines = CASES.find("rig_30310").read_text().splitlines()
         text = "\n".join(line[2:] if line.startswith("# ") and " = " in line else line for line in lines)
         scene, _ = case_from_dict(tomllib.loads(text))
         assert scene.bearing.roller.profile.kind == "straight"

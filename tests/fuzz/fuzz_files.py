@@ -27,10 +27,10 @@ import h5py
 import numpy as np
 
 import trbdyn as trb
+from trbdyn.base.shipped import CASES
 from trbdyn.errors import TrbError
 from trbdyn.model.cases import scene_30310
 from trbdyn.run import checkpoint
-from trbdyn.run.toml_case import find_case
 
 MEMORY = 2 << 30
 """Memory that a file may take beyond what the process has (byte)."""
@@ -266,7 +266,7 @@ def seeds(folder: Path) -> list[tuple[Path, ...]]:
     made += [(folder / "run.h5",), (folder / "pair.h5",), (folder / "cut.h5.checkpoint", folder / "cut.h5")]
     for name in ("rig_30310", "bearing_32216", "bearing_nj210"):
         path = folder / f"{name}.toml"
-        path.write_bytes(find_case(name).read_bytes())
+        path.write_bytes(CASES.find(name).read_bytes())
         made.append((path,))
     return made
 

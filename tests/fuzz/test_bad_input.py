@@ -17,10 +17,11 @@ from hypothesis import strategies as st
 from pydantic import BaseModel
 
 import trbdyn as trb
+from trbdyn.base.shipped import CASES
 from trbdyn.errors import FileError, InputError, LoadError, StepError
 from trbdyn.model.cases import paper_30310
 from trbdyn.run import checkpoint
-from trbdyn.run.toml_case import case_from_dict, find_case, load_case, shipped_cases
+from trbdyn.run.toml_case import case_from_dict, load_case
 
 COMMON = settings(
     max_examples=150,
@@ -120,7 +121,7 @@ FREE = SCENE | {
 PLACES = leaves(SCENE)[1:]
 FREE_PLACES = [place for place in leaves(FREE)[1:] if place[0] in ("ring", "ring_body", "housing", "torque")]
 FULL_PLACES = leaves(FULL)[1:]
-CASES = {name: tomllib.loads(find_case(name).read_text(encoding="utf-8")) for name in shipped_cases()}
+CASES = {name: tomllib.loads(CASES.find(name).read_text(encoding="utf-8")) for name in CASES.names()}
 CASE_PLACES = [(name, place) for name, case in CASES.items() for place in leaves(case)[1:]]
 
 

@@ -50,7 +50,7 @@ def test_what_fails_is_noticed(
 
 
 def test_damaged_case_files_are_read_or_refused(tmp_path: Path) -> None:
-    sound, draw = fuzz_files.find_case("rig_30310").read_bytes(), random.Random(1)
+    sound, draw = fuzz_files.CASES.find("rig_30310").read_bytes(), random.Random(1)
     path, changed = tmp_path / "case.toml", 0
     for _ in range(8):
         path.write_bytes(sound)

@@ -10,7 +10,6 @@ from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from trbdyn.base.own_files import file_path
 from trbdyn.cli.outcome import say
 from trbdyn.errors import InputError
 
@@ -39,15 +38,14 @@ def subject_with_changes(name: str, changes: Sequence[str]) -> tuple[Scene | Ass
 
 
 def _tables(name: str, changes: Sequence[str]) -> dict[str, Any]:
+    from trbdyn.base.shipped import SUBJECTS
     from trbdyn.model.scene import Scene
-    from trbdyn.run.toml_assembly import find_subject, shipped_assemblies
-    from trbdyn.run.toml_case import read_tables, shipped_cases
+    from trbdyn.run.toml_case import read_tables
 
-    path = file_path(name, "case")
-    shipped = (*shipped_cases(), *shipped_assemblies())
-    if not path.exists() and (changes or name.removesuffix(".toml") in shipped):
-        path = find_subject(name)
-    values = read_tables(path, f"; cases that ship with the package: {', '.join(shipped)}")
+    path = SUBJECTS.file(name)
+    if changes and not path.exists():
+        path = SUBJECTS.find(name)
+    values = read_tables(path, SUBJECTS.hint())
     for change in changes:
         key, equals, text = change.partition("=")
         *tables, last = key.strip().split(".")

@@ -117,18 +117,17 @@ def _title(options: argparse.Namespace) -> str:
 
 
 def _cases(options: argparse.Namespace) -> int:
+    from trbdyn.base.shipped import ASSEMBLIES, CASES, SUBJECTS
     from trbdyn.run.case_text import case_text
-    from trbdyn.run.toml_assembly import find_subject, shipped_assemblies
-    from trbdyn.run.toml_case import find_case, shipped_cases
 
-    if options.name is not None and options.name.removesuffix(".toml") in shipped_assemblies():
-        say(find_subject(options.name).read_text(encoding="utf-8"), end="")
+    if options.name is not None and options.name.removesuffix(".toml") in ASSEMBLIES.names():
+        say(ASSEMBLIES.find(options.name).read_text(encoding="utf-8"), end="")
         return DONE
     if options.name is not None:
-        first = find_case(options.name).read_text(encoding="utf-8").partition("\n")[0].lstrip("# ")
+        first = CASES.find(options.name).read_text(encoding="utf-8").partition("\n")[0].lstrip("# ")
         say(case_text(*subject_with_changes(options.name, ()), title=first), end="")
         return DONE
-    for path in map(find_subject, (*shipped_cases(), *shipped_assemblies())):
+    for path in map(SUBJECTS.find, SUBJECTS.names()):
         first = path.read_text(encoding="utf-8").partition("\n")[0]
         say(f"{path.stem:<16} {first.lstrip('# ')}")
     return DONE

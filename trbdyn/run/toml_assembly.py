@@ -14,9 +14,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, Final
 
-from trbdyn.base.own_files import file_path
-from trbdyn.base.shipped import DATA
-from trbdyn.errors import InputError, unknown_name
+from trbdyn.base.shipped import ASSEMBLIES
+from trbdyn.errors import InputError
 from trbdyn.model.assembly import Assembly, Shaft, ShaftBearing, ShaftLoad
 from trbdyn.model.scene import Scene
 from trbdyn.run.options import RunOptions
@@ -27,7 +26,6 @@ from trbdyn.run.toml_case import (
     case_from_dict,
     check_names,
     effects_from_table,
-    find_case,
     located,
     lubricant_from_table,
     read_tables,
@@ -35,15 +33,9 @@ from trbdyn.run.toml_case import (
     without,
 )
 
-FOLDER: Final = DATA / "assemblies"
 SHARED: Final = {"bearing": bearing_from_table, "lubricant": lubricant_from_table, "effects": effects_from_table}
 MADE_LOADS: Final[dict[str, Callable[..., ShaftLoad]]] = {"gear": ShaftLoad.gear, "wheel": ShaftLoad.wheel}
 TABLES: Final = ("assembly", "shaft", "bearings", "loads", "run", *SHARED)
-
-
-def shipped_assemblies() -> tuple[str, ...]:
-    """Names of the assemblies that ship with the package."""
-    return tuple(sorted(path.stem for path in FOLDER.glob("*.toml")))
 
 
 def load_assembly(path: str | Path) -> Assembly:
@@ -67,25 +59,7 @@ def load_assembly(path: str | Path) -> Assembly:
     >>> trb.load_assembly("pair_30310").arrangement
     'back to back'
     """
-    file = file_path(path, "assembly")
-    if not file.exists() and str(path).removesuffix(".toml") in shipped_assemblies():
-        file = find_assembly(str(path))
-    hint = f"; assemblies that ship with the package: {', '.join(shipped_assemblies())}"
-    return assembly_from_dict(read_tables(file, hint))[0]
-
-
-def find_assembly(name: str) -> Path:
-    """The file of an assembly that ships with the package, by its name with or without ``.toml``.
-
-    Raises
-    ------
-    InputError
-        If there is no such assembly.
-    """
-    stem = name.removesuffix(".toml")
-    if stem not in shipped_assemblies():
-        raise InputError.of("assembly", name, unknown_name(stem, shipped_assemblies()))
-    return FOLDER / f"{stem}.toml"
+    return assembly_from_dict(read_tables(ASSEMBLIES.file(path), ASSEMBLIES.hint()))[0]
 
 
 def assembly_from_dict(values: Mapping[str, Any]) -> tuple[Assembly, RunOptions]:
@@ -122,17 +96,6 @@ def subject_from_dict(values: Mapping[str, Any]) -> tuple[Scene | Assembly, RunO
         If a key is unknown or a value not allowed; the message names the full key.
     """
     return assembly_from_dict(values) if "assembly" in values else case_from_dict(values)
-
-
-def find_subject(name: str) -> Path:
-    """The file of a case or an assembly that ships with the package.
-
-    Raises
-    ------
-    InputError
-        If there is none of this name.
-    """
-    return find_assembly(name) if name.removesuffix(".toml") in shipped_assemblies() else find_case(name)
 
 
 def _tables(values: Mapping[str, Any], name: str) -> list[Table]:

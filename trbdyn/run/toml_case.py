@@ -25,8 +25,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
-from trbdyn.base.own_files import file_path, read_text
-from trbdyn.base.shipped import DATA
+from trbdyn.base.own_files import read_text
+from trbdyn.base.shipped import CASES
 from trbdyn.base.validation import Model
 from trbdyn.errors import MISSING, FileError, InputError, Problem, unknown_name
 from trbdyn.errors import Path as FieldPath
@@ -54,25 +54,6 @@ _OWN_TABLES: Final = ("bearing", "lubricant", "effects", "start")
 _TRACE: Final = tuple(inspect.signature(read_trace).parameters)[2:]
 
 
-def shipped_cases() -> tuple[str, ...]:
-    """Names of the cases that ship with the package."""
-    return tuple(sorted(path.stem for path in DATA.glob("*.toml")))
-
-
-def find_case(name: str) -> Path:
-    """The file of a case that ships with the package, by its name with or without ``.toml``.
-
-    Raises
-    ------
-    InputError
-        If there is no such case.
-    """
-    stem = name.removesuffix(".toml")
-    if stem not in shipped_cases():
-        raise InputError.of("case", name, unknown_name(stem, shipped_cases()))
-    return DATA / f"{stem}.toml"
-
-
 def load_case(path: str | Path) -> tuple[Scene, RunOptions]:
     """Scene and run options of a TOML file.
 
@@ -88,10 +69,7 @@ def load_case(path: str | Path) -> tuple[Scene, RunOptions]:
     InputError
         If a key is unknown or a value not allowed; the message names the full key.
     """
-    file = file_path(path, "case")
-    if not file.exists() and str(path).removesuffix(".toml") in shipped_cases():
-        file = find_case(str(path))
-    return case_from_dict(read_tables(file, f"; cases that ship with the package: {', '.join(shipped_cases())}"))
+    return case_from_dict(read_tables(CASES.file(path), CASES.hint()))
 
 
 def read_tables(file: Path, hint: str = "") -> Table:

@@ -15,15 +15,15 @@ from typing import Any, Final
 
 import numpy as np
 
-from trbdyn.base.own_files import file_path
+from trbdyn.base.shipped import SUBJECTS
 from trbdyn.base.shown import Displayed, Shown, value_text
 from trbdyn.base.validation import Model
 from trbdyn.errors import InputError, Path, join_path
 from trbdyn.model.assembly import Subject
 from trbdyn.run.options import RunOptions
 from trbdyn.run.toml_assembly import TABLES as OF_ASSEMBLIES
-from trbdyn.run.toml_assembly import find_subject, shipped_assemblies, subject_from_dict
-from trbdyn.run.toml_case import TABLES, read_tables, shipped_cases
+from trbdyn.run.toml_assembly import subject_from_dict
+from trbdyn.run.toml_case import TABLES, read_tables
 
 Table = dict[str, Any]
 PATHS: Final = tuple(dict.fromkeys((*TABLES, *OF_ASSEMBLIES)))
@@ -127,12 +127,10 @@ def read_toml(path: str | FilePath) -> Table:
         If it is no name.
     """
     try:
-        file = file_path(path, "study")
+        file = SUBJECTS.file(path)
     except InputError:
         limit = "must be a Scene or an Assembly, the tables of a case, or the name or file of one"
         raise InputError.of("base", path, limit) from None
-    if not file.exists() and str(path).removesuffix(".toml") in (*shipped_cases(), *shipped_assemblies()):
-        file = find_subject(str(path))
     return read_tables(file)
 
 
