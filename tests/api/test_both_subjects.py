@@ -335,7 +335,7 @@ def test_a_plan(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     assert all(part.effects.thermal for part in found.scene.parts.values())
     values = found.averages(found.run(duration=found.settle + 5e-3))
     assert values["torque"] == pytest.approx(found.value["torque"], rel=0.2)
-    assert str(found).count("promised within") == 2
+    assert all(f"{100.0 * found.promised[name]:.2g} %" in str(found) for name in found.want)
     text = case_text(found.scene, found.options)
     (tmp_path / "case.toml").write_text(text)
     read = trb.load_case if name == "scene" else trb.load_assembly

@@ -175,8 +175,11 @@ def test_it_is_ready_to_run(proposal: Plan) -> None:
 
 def test_its_words(proposal: Plan) -> None:
     text = str(proposal)
-    assert "torque = " in text
-    assert "wanted within 5 %" in text
+    assert "wanted within" in text
+    assert f"{proposal.value['torque']:.4g}" in text
+    assert "5 %" in text
+    for part in proposal.parts["torque"]:
+        assert part in text
     for row in proposal.rows:
         assert row.decision in text
     assert "the rollers creep within" in text

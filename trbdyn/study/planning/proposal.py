@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-import textwrap
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from trbdyn.base.shown import Shown
@@ -20,8 +19,6 @@ if TYPE_CHECKING:
     from trbdyn.model.assembly import Subject
     from trbdyn.results.assembly import AssemblyResult
     from trbdyn.results.result import Result
-
-PRINTED = 118
 
 
 @dataclass(frozen=True)
@@ -161,23 +158,24 @@ class Plan(Answer):
         return draw(self)
 
     def _shown(self) -> Shown:
-        head, *rows = _cells(self)
-        asked = Shown(
-            f"Plan: {', '.join(self.want)}",
-            tuple(
-                (
-                    name,
-                    f"{self.value[name]:.4g}",
-                    f"{100.0 * wish:.3g} %",
-                    f"{100.0 * self.promised[name]:.2g} %" + self._of_what(name),
-                )
-                for name, wish in self.want.items()
-            ),
-            ("average", "value", "wanted within", "promised within"),
-            tuple(_run_lines(self)) + tuple(f"Note: {text}" for text in self.warnings),
+        asked = tuple(
+            (
+                name,
+                f"{self.value[name]:.4g}",
+                f"{100.0 * wish:.3g} %",
+                f"{100.0 * self.promised[name]:.2g} %{self._of_what(name)}",
+                ", ".join(f"{part} {100.0 * size:.2g} %" for part, size in self.parts[name].items()),
+            )
+            for name, wish in self.want.items()
         )
-        return replace(
-            asked, parts=(Shown("what each simplification changes and saves", tuple(map(tuple, rows)), tuple(head)),)
+        more = "This is more than was wanted, or dearer than the budget: it is the most exact that was found."
+        notes = [more] * (not self.reached) + _run_lines(self) + [f"Note: {text}" for text in self.warnings]
+        return Shown(
+            f"Plan: {', '.join(self.want)}",
+            asked,
+            ("average", "value", "wanted within", "promised within", "of which"),
+            tuple(notes),
+            (_simplifications(self),),
         )
 
     def _of_what(self, name: str) -> str:
@@ -186,21 +184,9 @@ class Plan(Answer):
         return f" of {least:g}, as a smaller {name} means nothing" if least > abs(self.value[name]) else ""
 
     def __str__(self) -> str:
-        lines = []
-        for name, wish in self.want.items():
-            parts = ", ".join(f"{part} {100.0 * size:.2g} %" for part, size in self.parts[name].items())
-            lines.append(
-                f"{name} = {self.value[name]:.4g}: wanted within {100.0 * wish:.3g} %, promised within "
-                f"{100.0 * self.promised[name]:.2g} %{self._of_what(name)} ({parts})"
-            )
-        if not self.reached:
-            lines.append(
-                "This is more than was wanted, or dearer than the budget: it is the most exact that was found."
-            )
-        lines += ["", *_run_lines(self), "", *_table(self)]
-        for text in self.warnings:
-            lines += ["", *textwrap.wrap(f"Note: {text}", PRINTED)]
-        return "\n".join(lines)
+        """With the table of simplifications, which other answers leave to a notebook."""
+        shown = self._shown()
+        return "\n\n".join(part.text(names=True) for part in (shown, *shown.parts))
 
 
 def _run_lines(plan: Plan) -> list[str]:
@@ -217,20 +203,16 @@ def _run_lines(plan: Plan) -> list[str]:
     ]
 
 
-def _table(plan: Plan) -> list[str]:
-    """Influence on each average, time, and what was decided, as aligned lines."""
-    head, *rows = _cells(plan)
-    return Shown(rows=(tuple(head), *map(tuple, rows)), head=tuple(head)).text().splitlines()
-
-
-def _cells(plan: Plan) -> list[list[str]]:
-    head = ["simplification", *plan.want, "time", "decision"]
-    rows = [head]
+def _simplifications(plan: Plan) -> Shown:
+    """Influence on each average, time, and what was decided."""
+    rows = []
     for row in plan.rows:
         changes = [words(row.influence.get(name)) for name in plan.want]
         ratio = "-" if math.isnan(row.time_ratio) else f"x {row.time_ratio:.2f}"
-        rows.append([_name(row), *changes, ratio, row.decision])
-    return rows
+        rows.append((_name(row), *changes, ratio, row.decision))
+    return Shown(
+        "What each simplification changes and saves", tuple(rows), ("simplification", *plan.want, "time", "decision")
+    )
 
 
 def _name(row: Row) -> str:
