@@ -125,7 +125,7 @@ def say(verdict: dict[str, Any]) -> None:
 
 def report(verdicts: list[dict[str, Any]], seconds: float) -> None:
     counts = Counter((v["kind"], v["status"]) for v in verdicts)
-    statuses = ["right", "warned", "unjudged", "stopped", "refused", "wrong", "hanging", "crashed"]
+    statuses = ["right", "warned", "chance", "unjudged", "stopped", "refused", "wrong", "hanging", "crashed"]
     print(f"\n{len(verdicts)} scenes in {seconds / 60:.1f} min")
     print("kind      " + "".join(f"{s:>10}" for s in statuses))
     for kind in sorted({v["kind"] for v in verdicts}):

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 
-from judge import MOST_STEPS, bounded_run, judge, scene_duration  # noqa: E402
+from chance import like, mean_difference  # noqa: E402
+from judge import MOST_STEPS, bounded_run, by_chance, judge, scene_duration  # noqa: E402
 from random_scenes import KINDS, ORDINARY, draw, make  # noqa: E402
 
-FINE = ("right", "warned", "stopped", "refused", "unjudged")
+FINE = ("right", "warned", "chance", "stopped", "refused", "unjudged")
 FOUND = sorted((HERE / "found").glob("*.json"))
 
 
@@ -114,3 +117,15 @@ def test_the_judge_sees_a_run_that_is_wrong():
 
 def test_seeds_give_the_same_scene_again():
     assert draw("wide", 7) == draw("wide", 7) != draw("wide", 8)
+
+
+@pytest.mark.parametrize(("bias", "scatter", "chance"), [(0.0, 0.03, True), (0.05, 0.03, False), (0.0, 0.3, False)])
+def test_scenes_like_it_tell_a_bias_from_chance(bias, scatter, chance):
+    """The mean of scenes like it shows a bias of the tolerances, and no bias only where the mean is known well enough."""
+    rng = np.random.default_rng(1)
+    table = ORDINARY | draw("pieces", 98000010)
+    off, error = mean_difference(table, lambda one: (1.0 + bias + scatter * float(rng.standard_normal()), 1.0))
+    assert abs(off - bias) <= 1.5 * error
+    assert by_chance(off, error) is chance
+    assert mean_difference(table, lambda one: (math.nan, 1.0)) == (math.inf, math.inf)
+    assert like(table, 1) == like(table, 1) != like(table, 2)
