@@ -62,6 +62,7 @@ def test_spectrum_integrates_to_the_mean_square() -> None:
     f, p = obs.spectrum(t, x)
     assert np.trapezoid(p, f) == pytest.approx(4.5, rel=1e-3)
     assert obs.peak_frequency(f, p) == pytest.approx(50.0, abs=0.01)
+    assert obs.high_share(f, p) < 1e-3
     late, power = obs.spectrum(t + 5.0, x)  # a record that begins late
     np.testing.assert_allclose(late, f)
     np.testing.assert_allclose(power, p, rtol=1e-6, atol=1e-12)

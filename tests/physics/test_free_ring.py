@@ -317,6 +317,15 @@ def test_pictures_of_a_ring(tmp_path: Path) -> None:
     assert "Path of the inner ring" in report.read_text(encoding="utf-8")
 
 
+def test_a_spectrum_of_too_few_records_says_that_it_folds() -> None:
+    scene = scene_of(ROTOR.replace(unbalance=1e-4), radial_load=800.0)
+    for save_every, folds in ((1e-4, False), (1e-3, True)):
+        result = Simulation(scene, accuracy="fast").run(revolutions=3, save_every=save_every)
+        ax = trb.plot.ring_spectrum(result, along="z")
+        assert ("save more often" in ax.get_xlabel()) == folds
+        plt.close("all")
+
+
 def test_a_ring_that_leaves_its_bearing_is_said() -> None:
     """Without the back-face rib nothing holds the rollers along the cup: the ring went out by 6 mm without a word."""
     effects = Effects.standard().replace(bodies="rollers", gravity=False, back_rib=False)

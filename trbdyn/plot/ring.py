@@ -145,7 +145,8 @@ def ring_spectrum(
     ----------
     result : Result
         Needs the groups time and ring, or housing for the outer ring; best after settling, at constant speed. Vibrations
-        faster than half of the records are folded to lower orders: save often enough.
+        faster than half of the records are folded to lower orders; a line below the picture says so where much of the power
+        lies in the highest octave of the records.
     of : {'displacement', 'velocity', 'acceleration'}
         What of the vibration.
     along : {'x', 'y', 'z'}
@@ -185,8 +186,10 @@ def ring_spectrum(
         highest = float(amplitude.max(initial=0.0))
         if highest > 0.0:
             ax.set_ylim(max(1e-6 * highest, float(amplitude[amplitude > 0.0].min())), 3.0 * highest)
-        ax.set(
-            xlabel="frequency / shaft frequency", ylabel=f"amplitude density ({unit}/$\\sqrt{{Hz}}$)", xlim=(0, orders)
-        )
+        xlabel, high = "frequency / shaft frequency", observables.high_share(frequency, density)
+        if high > observables.FOLDED:
+            xlabel += f"\n{100.0 * high:.0f} % of the power at {0.5 * frequency[-1]:.3g} to {frequency[-1]:.3g} Hz, the fastest"
+            xlabel += " of these records: faster vibrations may\nappear at lower orders here; save more often"
+        ax.set(xlabel=xlabel, ylabel=f"amplitude density ({unit}/$\\sqrt{{Hz}}$)", xlim=(0, orders))
         legend(ax, ncols=2)
     return ax

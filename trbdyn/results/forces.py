@@ -32,8 +32,6 @@ Along = Literal["x", "y", "z"]
 
 FEWEST: Final = 32
 """Fewest intervals of a spectrum."""
-FOLDED: Final = 0.1
-"""Largest share of the power in the highest octave of a force that the records resolve."""
 SILENT: Final = 1e-6
 """A force that varies by less (N, rms) is none."""
 HANN: Final = 1.5
@@ -150,14 +148,14 @@ def _check_resolved(force: Force) -> None:
     if force.rms <= SILENT:
         return
     frequency, density = observables.spectrum(force.interval * np.arange(force.values.size), force.values)
-    high = float(density[frequency >= 0.5 * force.nyquist].sum() / density.sum())
-    if high > FOLDED:
+    high = observables.high_share(frequency, density)
+    if high > observables.FOLDED:
         raise InputError.of(
             "save_every",
             force.interval,
             f"must be shorter (s): {100.0 * high:.0f} % of the power of the {force.words.lower()} lies in the highest octave "
-            f"that these records resolve, {0.5 * force.nyquist:.4g} to {force.nyquist:.4g} Hz; {100.0 * FOLDED:.0f} % are "
-            "allowed, as what is faster would be folded to lower frequencies",
+            f"that these records resolve, {0.5 * force.nyquist:.4g} to {force.nyquist:.4g} Hz; "
+            f"{100.0 * observables.FOLDED:.0f} % are allowed, as what is faster would be folded to lower frequencies",
         )
 
 

@@ -34,10 +34,11 @@ from trbdyn.results.observables.rollers import (
     spacing_std,
     wrap_angle,
 )
-from trbdyn.results.observables.signals import Settling, peak_frequency, settling, spectrum, uniform
+from trbdyn.results.observables.signals import FOLDED, Settling, high_share, peak_frequency, settling, spectrum, uniform
 from trbdyn.results.observables.uncertainty import MeanError, correlation_time, half_width, mean_error
 
 __all__ = [
+    "FOLDED",
     "LIMITS",
     "CageMotion",
     "Drift",
@@ -57,6 +58,7 @@ __all__ = [
     "energy_audit",
     "energy_balance",
     "half_width",
+    "high_share",
     "kinematic_slip",
     "lean",
     "locus",

@@ -90,6 +90,29 @@ def spectrum(time: ArrayLike, values: ArrayLike, segments: int = 1) -> tuple[Arr
     return np.asarray(frequency[order], dtype=float), np.asarray(np.real(density[order]), dtype=float)
 
 
+FOLDED = 0.1
+"""Largest share of a spectrum's power in its highest octave: where more lies there, more lies above it too, and records fold that
+to lower frequencies."""
+
+
+def high_share(frequency: ArrayLike, density: ArrayLike) -> float:
+    """Share of a spectrum's power in the highest octave that the samples resolve: large where faster parts are folded.
+
+    Parameters
+    ----------
+    frequency, density : array_like, shape (F,)
+        A spectrum at even, increasing frequencies, up to half of the frequency of the samples.
+
+    Returns
+    -------
+    float
+        The share (1), see `FOLDED`; 0 for a signal that is constant.
+    """
+    f, p = np.abs(np.asarray(frequency, dtype=float)), np.asarray(density, dtype=float)
+    total = float(p.sum())
+    return float(p[f >= 0.5 * f.max()].sum() / total) if total > 0.0 else 0.0
+
+
 def peak_frequency(frequency: ArrayLike, density: ArrayLike) -> float:
     """Frequency of a spectrum's highest peak, by a parabola through the logarithms of the peak and its neighbours.
 
