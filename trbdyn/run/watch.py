@@ -347,7 +347,9 @@ class Watch:
         unclear = size > (vibrations.SIZE if share > vibrations.GROWING else vibrations.MOST)
         if size > account.probed_size and self._probe(suspect, vibrations.LENGTH, vibrations.STEPS):
             account.probed_size = size
-            account.notable = account.probed is None or account.probed.notable(certain=not unclear)
+            account.notable = account.probed is None or (
+                account.probed.notable(certain=not unclear) or (unclear and account.probed.open)
+            )
             if account.notable and account.probed is not None:
                 self._probe(suspect, vibrations.LONGER, vibrations.STEPS_LONGER)
                 account.notable = account.probed.notable(certain=True) or (unclear and account.probed.open)
