@@ -56,7 +56,7 @@ demo: install
 site: docs
 
 docs: install $(VENV)/.docs
-	$(PY) -m sphinx -W --keep-going -b html -d build/docs-cache docs build/docs
+	$(PY) -m sphinx -j $(JOBS) -W --keep-going -b html -d build/docs-cache docs build/docs
 	@echo "build/docs/index.html"
 
 figures: install $(VENV)/.test

@@ -71,3 +71,8 @@ html_show_sphinx = False
 html_static_path = ["static"]
 html_css_files = ["widths.css"]
 html_search_scorer = str(Path(__file__).resolve().parent / "static" / "scorer.js")
+
+
+def setup(app):
+    """Several processes read pages; the extension for formulas only adds a script, and does not say that this is safe."""
+    app.extensions["sphinx-mathjax-offline"].parallel_read_safe = True
