@@ -171,7 +171,7 @@ def test_an_angle_of_bars_that_the_scene_has_not() -> None:
         ({"want": {}}, "must name at least one"),
         ({"change": {"bearing.roller.diametre": (1.0, 2.0)}}, "the scene has no number there"),
         ({"change": {RADIUS: (5.0, 5.0)}}, "must have low < high"),
-        ({"limits": {"torque": -1.0}}, "no design keeps them"),
+        ({"limits": {"torque": -1.0}}, "keeps them; more designs"),
         ({"limits": {"torque": (None, None)}}, "must be the largest value"),
         ({"designs": 4}, "at least 10"),
         ({"judged": "median"}, "judged"),

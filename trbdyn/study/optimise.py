@@ -149,7 +149,9 @@ class Optimum(Answer):
         notes = [f"aims and limits {told}; `pair` runs the first and the chosen design again"]
         if confirmed:
             longer = (self.data["design"] == self.chosen.number) & (self.data["length"] > 1.0)
-            moving = int((~self.data["settled"].values[longer].astype(bool)).sum())
+            # of bearings on a shaft each has one, with its name before it
+            settled = [self.data[name].values[longer] for name in self.data if str(name).endswith("settled")]
+            moving = int((~np.all(settled, axis=0)).sum())
         if moving:
             notes.append(
                 f"{moving} of {int(longer.sum())} longer runs of the chosen design are not known to have settled; a larger"
@@ -489,9 +491,8 @@ class Search:
         front = self.front(self.confirmed if self.confirm > 1.0 else self.ran)
         if not front.any():
             least = {name: f"{side} {value:g}" for name, side, value in self.limits}
-            raise InputError.of(
-                "limits", least, "no design keeps them; more designs, wider changes or other limits may"
-            )
+            kept = "no design that was run longer keeps them" if self.confirm > 1.0 else "no design keeps them"
+            raise InputError.of("limits", least, f"{kept}; more designs, wider changes or other limits may")
         made = {int(n): self._design(int(n), smooth[n]) for n in np.flatnonzero(self.ran)}
         chosen = made[self.aims.compromise(smooth, front)]
         subjects = (self.subject, self.subject if chosen.number == 0 else self.built(chosen.inputs))
