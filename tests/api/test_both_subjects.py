@@ -291,6 +291,9 @@ def test_the_best_design(name: str) -> None:
     found = trb.optimise(subject, {play: (1e-4, 3e-4)}, {"torque": "least"}, designs=10, confirm=2.0, options=SHORT)
     assert found.chosen.confirmed
     assert "1 of 1 longer runs of the chosen design are not known to have settled" in " ".join(str(found).split())
+    assert "front of the designs with longer runs" in [
+        text.get_text() for text in found._draw().axes[0].get_legend().texts
+    ]
 
 
 def test_whirl_onset(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
