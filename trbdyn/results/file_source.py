@@ -300,9 +300,10 @@ class FileSource:
         FileError
             If one of them is damaged.
         """
-        for entry in self.fields:
-            self.read(entry.name)
-            del self._cache[entry.name]
+        with self.held_open():
+            for entry in self.fields:
+                self.read(entry.name)
+                del self._cache[entry.name]
 
     def part(self, name: str, rows: slice) -> Array:
         """Some records of one field, which are not kept."""
