@@ -1,5 +1,7 @@
 """The order of the test files: those that take longest come first, so that several processes end at about the same time.
 
+Worker processes of studies take seconds to start: their tasks are done in this process, in tests that do not ask for `workers`.
+
 Linear algebra takes one thread: several processes with two threads each wait for each other most of the time.
 
 Tests of Ctrl-C send signals: a shell that starts tests in the background lets them ignore it; Python then installs no handler.
@@ -7,9 +9,12 @@ Tests of Ctrl-C send signals: a shell that starts tests in the background lets t
 
 from __future__ import annotations
 
+import gc
 import os
+import pickle
 import signal
-from typing import Final
+from collections.abc import Callable
+from typing import Any, Final
 
 import pytest
 
@@ -45,6 +50,54 @@ LONGEST: Final = (
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # read when NumPy is imported, after this
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def done_here(work: Callable[..., Any], tasks: Any, count: int) -> Any:
+    """In place of worker processes: this one, with what they get and give through pickle."""
+    from trbdyn.study import executors
+
+    def through_pickle(task: Any, stopped: Callable[[], bool]) -> Any:
+        own, given = pickle.loads(pickle.dumps((work, task)))
+        return pickle.loads(pickle.dumps(own(given, stopped)))
+
+    return executors._serial(through_pickle, tasks)
+
+
+def pytest_collection_finish() -> None:
+    """What was collected stays to the end: the collector of garbage need not look at it again and again."""
+    gc.collect()
+    gc.freeze()
+
+
+def pytest_sessionstart() -> None:
+    """Before the fixtures of modules."""
+    from trbdyn.study import executors
+
+    WORKERS.append(executors._processes)
+    executors._processes = done_here
+
+
+WORKERS: Final[list[Any]] = []
+"""What starts worker processes."""
+
+
+@pytest.fixture
+def workers(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Studies of this test have worker processes."""
+    monkeypatch.setattr("trbdyn.study.executors._processes", WORKERS[0])
+
+
+@pytest.fixture
+def drawn_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pictures of reports are drawn, but not made into images, which takes most of a report's time: tests/report does that."""
+    import matplotlib.pyplot as plt
+
+    def image(draw: Callable[[], object]) -> str:
+        draw()
+        plt.close("all")
+        return ""
+
+    monkeypatch.setattr("trbdyn.reporting.page.image", image)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -17,7 +17,7 @@ from trbdyn.errors import InputError, StepError
 from trbdyn.run import memory, running
 from trbdyn.run.case_text import case_text
 from trbdyn.run.checkpoint import checkpoint_path
-from trbdyn.study import thermal, whirl
+from trbdyn.study import thermal, torque_map, whirl
 from trbdyn.study.definition import Base
 from trbdyn.study.planning import candidates, ground, looking
 
@@ -130,9 +130,13 @@ def test_what_a_callback_raises_has_the_result(name: str) -> None:
 
 
 def test_until(name: str) -> None:
+    """A run that is too short says so for each bearing."""
     with pytest.warns(trb.RunWarning, match="without the confidence"):
-        result = simulation(name).run(revolutions=0.5, until={"torque": 1e-4})
+        result = simulation(name).run(revolutions=0.25, until={"torque": 1e-4})
     assert result.success
+    assert all("without the confidence" in " ".join(one.warnings) for one in result.parts)
+    with pytest.raises(InputError, match="until"):
+        simulation(name).run(revolutions=1.0, until={"orbit": 1e-3})
 
 
 def test_turns_are_not_counted_where_a_torque_drives_the_shaft(name: str) -> None:
@@ -180,13 +184,13 @@ def test_a_full_memory_ends_a_run(name: str, monkeypatch: pytest.MonkeyPatch) ->
 
 def test_a_run_that_was_cut_off_goes_on(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Ctrl-C in the middle, then a resumed run: the same bits as a run without a break."""
-    how: dict[str, Any] = {"duration": 2e-3, "save_every": 1e-5, "checkpoint_every": 3e-4}
+    how: dict[str, Any] = {"duration": 1e-3, "save_every": 2e-5, "checkpoint_every": 2e-4}
     whole = simulation(name).run(**how, output=tmp_path / "whole.h5")
     keep = running.Run._keep
 
     def interrupted(self: running.Run, records: Any) -> None:
         keep(self, records)
-        if self.sim.time > 1e-3:
+        if self.sim.time > 5e-4:
             signal.raise_signal(signal.SIGINT)
 
     path = tmp_path / "cut.h5"
@@ -257,7 +261,8 @@ def test_uncertainty(name: str) -> None:
     assert all(band.low < band.high for band in trb.study.open_inputs(SUBJECTS[name]))
 
 
-def test_torque_map(name: str) -> None:
+def test_torque_map(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(torque_map, "TURNS", (1.0,))
     how: dict[str, Any] = {"temperatures": [60.0], "tolerance": 0.3, "workers": 2}
     found = trb.torque_map(SUBJECTS[name], [3000.0], [3000.0], **how)
     torque = found.data["torque"].values.ravel()
@@ -355,6 +360,7 @@ def test_a_plan(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
         trb.plan(SUBJECTS[name], {"middle_torque": 0.1})
 
 
+@pytest.mark.usefixtures("workers")
 def test_a_study_over_workers(name: str, tmp_path: Path) -> None:
     speed = "scene.speed_rpm" if name == "scene" else "assembly.speed_rpm"
     warm = f"{PREFIX[name]}lubricant.temperature_c"
@@ -378,6 +384,7 @@ def test_a_base_builds_what_it_was_made_of(name: str) -> None:
     assert built.fingerprint == SUBJECTS[name].fingerprint
 
 
+@pytest.mark.usefixtures("drawn_only")
 def test_the_command_line_report_and_view(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

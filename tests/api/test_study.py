@@ -27,7 +27,7 @@ from trbdyn.study.definition import Base, put, split_path
 from trbdyn.study.gather import unit_of
 from trbdyn.study.index import INDEX, Entry, Index, read_lines
 
-OPTIONS = study.RunOptions(duration=4e-3, save_every=2e-4)
+OPTIONS = study.RunOptions(duration=1e-3, save_every=5e-5, save_groups=("cage", "torque", "power"))
 FAST = {"effects.n_slices": 4}
 
 
@@ -165,7 +165,7 @@ class TestDefinition:
         assert made.shape == (3,)
 
     @given(count=st.integers(1, 12), seed=st.integers(0, 2**32))
-    @settings(max_examples=10, deadline=None)
+    @settings(max_examples=3, deadline=None)
     def test_random_draws_are_seeded_and_keep_the_first(self, count: int, seed: int) -> None:
         ranges = {
             "bearing.cage.mass": {"low": 0.05, "high": 0.8, "scale": "log"},
@@ -197,6 +197,7 @@ class TestDefinition:
 
 
 class TestExecutors:
+    @pytest.mark.usefixtures("workers")
     @pytest.mark.parametrize("kind", ["threads", pytest.param("processes", marks=pytest.mark.slow)])
     def test_threads_and_processes_equal_serial(self, serial: tuple[Any, Path], tmp_path: Path, kind: str) -> None:
         data, folder = serial
@@ -267,6 +268,7 @@ class TestExecutors:
         yield study_work
         sys.modules.pop("study_work", None)
 
+    @pytest.mark.usefixtures("workers")
     def test_a_process_that_dies_takes_only_its_own_task(self, module: Any) -> None:
         tasks = [1, 2, "die", 3, "raise", 4, "die", 5]
         outcomes = list(executors.execute(module.deadly, tasks, "processes", 2))
@@ -276,6 +278,7 @@ class TestExecutors:
         assert sorted(str(o.task) for o in failed) == ["die", "die", "raise"]
         assert all(isinstance(o.error, TrbError if o.task == "die" else ValueError) for o in failed)
 
+    @pytest.mark.usefixtures("workers")
     @pytest.mark.parametrize("kind", ["threads", "processes"])
     def test_closing_stops_what_is_under_way(self, module: Any, kind: str) -> None:
         began = time.monotonic()
@@ -422,27 +425,18 @@ class TestResume:
         {"scene.speed_rpm": 1000.0 * (1 + k % 2), "bearing.cage.mass": 0.1 * (1 + k // 2)} for k in range(4)
     )
 
-    @pytest.fixture(scope="class")
-    @classmethod
-    def in_order(cls, tmp_path_factory: pytest.TempPathFactory) -> tuple[Any, Path]:
-        folder = tmp_path_factory.mktemp("in_order")
+    def test_the_order_of_cases_does_not_matter(self, tmp_path: Path) -> None:
         scene = trb.cases.scene_30310(effects=trb.Effects.minimal())
-        return study.run(study.cases(scene, list(cls.OVERRIDES), OPTIONS), folder, executor="serial"), folder
-
-    @given(order=st.permutations(range(4)))
-    @settings(max_examples=1, deadline=None)
-    def test_the_order_of_cases_does_not_matter(
-        self, in_order: tuple[Any, Path], tmp_path_factory: pytest.TempPathFactory, order: list[int]
-    ) -> None:
-        straight, first = in_order
-        folder = tmp_path_factory.mktemp("order")
-        scene = trb.cases.scene_30310(effects=trb.Effects.minimal())
-        overrides = [self.OVERRIDES[k] for k in order]
-        mixed = study.run(study.cases(scene, overrides, OPTIONS), folder, executor="threads")
-        assert same(records(first), records(folder))
-        names = [n for n in straight.variables if not str(n).startswith("wall") and n != "case"]
-        for name in names:
-            np.testing.assert_array_equal(straight[name].values[list(order)], mixed[name].values, err_msg=str(name))
+        order, folders = [2, 0, 3, 1], [tmp_path / "straight", tmp_path / "mixed"]
+        straight, mixed = (
+            study.run(study.cases(scene, overrides, OPTIONS), folder, executor=executor)
+            for overrides, folder, executor in zip(
+                (self.OVERRIDES, [self.OVERRIDES[k] for k in order]), folders, ("serial", "threads"), strict=True
+            )
+        )
+        assert same(*map(records, folders))
+        for name in (n for n in straight.variables if not str(n).startswith("wall") and n != "case"):
+            np.testing.assert_array_equal(straight[name].values[order], mixed[name].values, err_msg=str(name))
 
 
 class TestDataset:
@@ -490,8 +484,8 @@ STUDY = """
 case = "rig_30310"
 {kind}
 [run]
-duration = 4e-3
-save_every = 2e-4
+duration = 1e-3
+save_every = 5e-5
 revolutions = 1e9
 [effects]
 n_slices = 4
@@ -549,7 +543,7 @@ class TestCommand:
     def test_ctrl_c_ends_cleanly_and_resume_goes_on(self, tmp_path: Path) -> None:
         kind = '[study.grid]\n"scene.speed_rpm" = [1000.0, 2000.0, 3000.0]\n"bearing.cage.mass" = [0.1, 0.2]'
         file = self.write(tmp_path / "many.toml", kind)
-        file.write_text(file.read_text().replace("duration = 4e-3", "duration = 0.02"))
+        file.write_text(file.read_text().replace("duration = 1e-3", "duration = 0.02"))
         out = tmp_path / "out"
         words = [sys.executable, "-P", "-m", "trbdyn", "sweep", str(file), "-o", str(out), "--workers", "2", "--quiet"]
         with subprocess.Popen(words, start_new_session=True, stderr=subprocess.PIPE) as process:
