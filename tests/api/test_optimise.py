@@ -16,7 +16,7 @@ from trbdyn.study.uncertainty import unit_draws
 
 SCENE = trb.cases.scene_32216(2000.0)
 SCENE = SCENE.replace(bearing=SCENE.bearing.replace({"roller.profile": trb.Profile.crowned(20.0)}))
-OPTIONS = trb.RunOptions(duration=2e-4, accuracy="fast")
+OPTIONS = trb.RunOptions(duration=2e-4, accuracy="fast", save_groups=("contacts", "torque"))
 RADIUS, WARM = "bearing.roller.profile.crown_radius", "lubricant.temperature_c"
 CHANGE = {RADIUS: (5.0, 100.0), WARM: (40.0, 60.0)}
 TORQUE: Any = {"torque": "least"}
@@ -131,14 +131,13 @@ def test_only_designs_that_longer_runs_confirm_are_chosen(monkeypatch: pytest.Mo
     short = trb.optimise(SCENE, change, TORQUE, designs=24, confirm=1.0)
     assert short.chosen.inputs[RADIUS] > 90.0
     assert not any(one.confirmed for one in short.designs)
-    for seed in range(2):
-        found = trb.optimise(SCENE, change, TORQUE, designs=28, seed=seed)
-        assert 40.0 < found.chosen.inputs[RADIUS] <= 60.0
-        assert all(one.confirmed for one in (*found.front, found.first))
-        assert sum(one.confirmed for one in found.designs) <= 8
-        assert found.chosen.expected["torque"] == found.chosen.values["torque"] < found.first.values["torque"]
-        # the search goes on below the radius that longer runs refute
-        assert np.median([one.inputs[RADIUS] for one in found.designs[-8:]]) < 65.0
+    found = trb.optimise(SCENE, change, TORQUE, designs=28)
+    assert 40.0 < found.chosen.inputs[RADIUS] <= 60.0
+    assert all(one.confirmed for one in (*found.front, found.first))
+    assert sum(one.confirmed for one in found.designs) <= 8
+    assert found.chosen.expected["torque"] == found.chosen.values["torque"] < found.first.values["torque"]
+    # the search goes on below the radius that longer runs refute
+    assert np.median([one.inputs[RADIUS] for one in found.designs[-8:]]) < 65.0
 
 
 def test_a_longer_run_that_fails_refuses_the_design(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -112,7 +112,10 @@ DRAWN = [name for name in plot.PICTURES if name not in WHOLE]
 
 
 @pytest.mark.parametrize("name", [name for name in plot.PICTURES if name not in NEED_A_SCENE])
-def test_the_title_names_the_quantity(name: str, whirling: Result, tmp_path: Path) -> None:
+def test_the_title_names_the_quantity(
+    name: str, whirling: Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(plt.Figure, "savefig", lambda figure, target, **how: target.write(b"x"))
     picture = plot.PICTURES[name][0](whirling)
     figure = picture if isinstance(picture, plt.Figure) else picture.figure
     quantity = figure.get_suptitle()

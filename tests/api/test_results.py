@@ -468,7 +468,7 @@ def test_a_killed_writer_leaves_a_readable_file(tmp_path: Path, seed: int, besid
     with start_writer(tmp_path, WRITE_ON, beside=beside) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == b"ready\n"
-        time.sleep(0.4 + 0.237 * seed)
+        time.sleep(0.1 + 0.137 * seed)
         process.send_signal(signal.SIGKILL)
     loaded = load(tmp_path / "run.h5")
     assert not loaded.success

@@ -14,6 +14,7 @@ import trbdyn as trb
 from trbdyn.cli import main
 from trbdyn.model.heat import PARTS
 from trbdyn.results.result import Result
+from trbdyn.study import thermal
 from trbdyn.study.heat_network import LossCurves, film_temperature, heat_of, network, rise
 from trbdyn.study.thermal import Thermal
 
@@ -132,6 +133,14 @@ def test_bands_hold_the_value(rig: Thermal) -> None:
     assert set(rig.bands) == {*PARTS, "film", "power"}
 
 
+@pytest.fixture
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Short runs at few temperatures."""
+    for setting, value in {"CURVE": 3, "TURNS": (1.0,), "SETTLED": 1.0, "CLOSE": 0.1}.items():
+        monkeypatch.setattr(thermal, setting, value)
+
+
+@pytest.mark.usefixtures("quick")
 def test_more_cooling_is_colder(rig: Thermal) -> None:
     paths = trb.HeatPaths.reference(**REFERENCE, oil_flow=60.0, oil_inlet_c=40.0)
     cooler = trb.thermal(trb.cases.scene_30310(), paths)
@@ -161,6 +170,7 @@ def test_paths_that_cannot_be(paths: dict[str, float], words: str) -> None:
         trb.HeatPaths(**paths)
 
 
+@pytest.mark.usefixtures("quick")
 def test_refusals() -> None:
     scene = trb.cases.scene_30310()
     with pytest.raises(trb.InputError, match="films hotter than 180 C"):

@@ -118,7 +118,7 @@ def test_longer_runs_only_where_they_are_needed(monkeypatch: pytest.MonkeyPatch)
 def test_bands() -> None:
     scene = trb.cases.scene_32216(1000.0)
     bands = {"lubricant.temperature_c": (47.0, 53.0)}
-    found = torque_map(scene, [500.0, 2000.0], [6000.0], bands=bands, samples=8)
+    found = torque_map(scene, [500.0], [6000.0], bands=bands, samples=8)
     low, middle, high = (found.data[name].values.ravel() for name in ("torque_low", "torque", "torque_high"))
     assert np.all(low < middle)
     assert np.all(middle < high)

@@ -56,20 +56,26 @@ def test_too_few_draws_have_straight_lines_or_no_shares() -> None:
     assert first_order(draws, np.ones(16))[0].size == 0
 
 
+def skewed(x: np.ndarray) -> np.ndarray:
+    """A sum of three inputs with a skew."""
+    return np.asarray(x[:, 0] - np.log1p(-0.999 * x[:, 1]) + 0.5 * x[:, 2] ** 2)
+
+
+@pytest.fixture(scope="module")
+def whole() -> np.ndarray:
+    """A million of its values in their order."""
+    return np.sort(skewed(np.random.default_rng(1).random((1_000_000, 3))))
+
+
 @pytest.mark.parametrize("draws", [8, 16, 32, 64, 256])
 @pytest.mark.parametrize("kind", ["independent", "Sobol"])
-def test_a_band_holds_the_share_that_it_states(draws: int, kind: str) -> None:
-    """Of a sum of three inputs with a skew: a million values show what each band holds; the mean over 300 sets of draws."""
-
-    def answer(x: np.ndarray) -> np.ndarray:
-        return np.asarray(x[:, 0] - np.log1p(-0.999 * x[:, 1]) + 0.5 * x[:, 2] ** 2)
-
-    random = np.random.default_rng(draws)
-    whole, sets = np.sort(answer(random.random((1_000_000, 3)))), 300
+def test_a_band_holds_the_share_that_it_states(whole: np.ndarray, draws: int, kind: str) -> None:
+    """The million values show what each band holds; the mean over 300 sets of draws."""
+    random, sets = np.random.default_rng(draws), 300
     held, stated = [], share_held(draws)
     for seed in range(sets):
         low, high, said = band_of(
-            answer(random.random((draws, 3)) if kind == "independent" else unit_draws(3, draws, seed))
+            skewed(random.random((draws, 3)) if kind == "independent" else unit_draws(3, draws, seed))
         )
         assert said == stated
         held.append(np.diff(np.searchsorted(whole, [low, high]))[0] / len(whole))
@@ -104,7 +110,7 @@ def test_a_band_is_that_of_its_draws(tmp_path: Path) -> None:
 def test_whole_numbers_stay_whole() -> None:
     options = trb.RunOptions(revolutions=0.01, accuracy="fast")
     bands = {"effects.n_slices": (6, 12), "lubricant.temperature_c": (50.0, 60.0)}
-    found = uncertainty(trb.cases.scene_30310(3000.0), bands, samples=16, seed=1, options=options)
+    found = uncertainty(trb.cases.scene_30310(3000.0), bands, samples=8, seed=1, options=options)
     assert set(np.unique(found.data["effects.n_slices"].values[1:])) <= set(range(6, 13))
     assert not (found.data["lubricant.temperature_c"].values[1:] % 1.0 == 0.0).all()
 
@@ -153,7 +159,7 @@ def test_every_draw_of_a_catalogue_bearing_can_be_built(name: str) -> None:
     bands = list(open_inputs(scene))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        cases = draws_of(scene, bands, 128)
+        cases = draws_of(scene, bands, 64)
     assert [case.error for case in cases if case.scene is None] == []
     drawn = [case.scene.bearing for case in cases if case.scene is not None]
     fill = [one.n_rollers * one.roller.diameter / (np.pi * one.pitch_diameter) for one in drawn]

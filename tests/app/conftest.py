@@ -95,7 +95,7 @@ def server(tmp_path: Path) -> Iterator[Server]:
     running.end()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """One for tests that run nothing."""
     running = Server(tmp_path_factory.mktemp("app") / "app")

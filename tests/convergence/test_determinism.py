@@ -16,8 +16,8 @@ import pytest
 import trbdyn as trb
 from trbdyn import Effects, Simulation, _core
 
-SPANS = {"bdf": 2e-3, "erk": 8e-4, "multirate": 2e-3}
-"""Time of a run (s), with some hundred or thousand steps; the cage collides within it."""
+SPANS = {"bdf": 1e-3, "erk": 4e-4, "multirate": 1e-3}
+"""Time of a run (s), with some hundred steps; the cage collides within it."""
 
 
 def started(kit: SimpleNamespace, **options: Any) -> Simulation:

@@ -10,7 +10,7 @@ import pytest
 
 from trbdyn import Effects, Result
 
-CASES = {"rolling": (Effects.standard(), 0.0, 4e-3), "colliding": (Effects.paper(), 1.0, 1.5e-3)}
+CASES = {"rolling": (Effects.standard(), 0.0, 2e-3), "colliding": (Effects.paper(), 1.0, 8e-4)}
 """Effects, how hard the cage is thrown, how long."""
 TRUTH = 1e-9
 

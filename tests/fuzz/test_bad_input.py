@@ -20,7 +20,6 @@ import trbdyn as trb
 from trbdyn.base.shipped import CASES
 from trbdyn.errors import FileError, InputError, LoadError, StepError
 from trbdyn.model.cases import paper_30310
-from trbdyn.run import checkpoint
 from trbdyn.run.toml_case import case_from_dict, load_case
 
 COMMON = settings(
@@ -334,65 +333,3 @@ def test_any_state_vector(sim: trb.Simulation, data: st.DataObject) -> None:
     except StepError as error:
         say(error)
     assert np.isfinite(sim.state.vector).all()
-
-
-@pytest.fixture(scope="module")
-def files(tmp_path_factory: pytest.TempPathFactory) -> tuple[bytes, bytes, Path]:
-    """A result, a checkpoint, and a place for damaged ones."""
-    folder = tmp_path_factory.mktemp("files")
-
-    def stop(now: trb.Simulation) -> bool:
-        return now.time > 3e-3
-
-    trb.Simulation(paper_30310()).run(duration=0.01, checkpoint_every=1e-3, output=folder / "run.h5", callback=stop)
-    return (folder / "run.h5").read_bytes(), checkpoint.checkpoint_path(folder / "run.h5").read_bytes(), folder
-
-
-def damaged(data: bytes, draw: Any) -> bytes:
-    kind = draw(st.sampled_from(["cut", "flip", "zeros", "noise", "insert"]))
-    at = draw(st.integers(0, len(data) - 1))
-    length = draw(st.integers(1, 64))
-    match kind:
-        case "cut":
-            return data[:at]
-        case "flip":
-            return data[:at] + bytes([data[at] ^ (1 << draw(st.integers(0, 7)))]) + data[at + 1 :]
-        case "zeros":
-            return data[:at] + bytes(min(length, len(data) - at)) + data[at + length :]
-        case "noise":
-            return data[:at] + draw(st.binary(min_size=length, max_size=length)) + data[at + length :]
-        case _:
-            return data[:at] + draw(st.binary(min_size=1, max_size=64)) + data[at:]
-
-
-@settings(parent=COMMON, max_examples=300)
-@given(data=st.data())
-def test_damaged_checkpoints(files: tuple[bytes, bytes, Path], data: st.DataObject) -> None:
-    """The checksum finds every damage."""
-    _, good, folder = files
-    path = folder / "bad.checkpoint"
-    path.write_bytes(damaged(good, data.draw))
-    if path.read_bytes() == good:
-        return
-    with pytest.raises(FileError):
-        checkpoint.read(path)
-
-
-@settings(parent=COMMON, max_examples=60)
-@given(data=st.data())
-def test_damaged_results(files: tuple[bytes, bytes, Path], data: st.DataObject) -> None:
-    """A damaged result is refused, or read with the damage in its numbers; nothing else is raised."""
-    good, _, folder = files
-    path = folder / "bad.h5"
-    bad = (
-        damaged(good[: 1 << 16], data.draw) + good[1 << 16 :] if data.draw(st.booleans()) else damaged(good, data.draw)
-    )
-    path.write_bytes(bad)
-    try:
-        result = trb.load(path)
-        assert isinstance(result.message, str)
-        for field in result.fields:
-            assert result[field.name].shape[0] == len(result)
-        result.scene  # noqa: B018
-    except (FileError, InputError) as error:
-        say(error)

@@ -156,7 +156,7 @@ def check(arguments: list[str]) -> None:
 
 
 @settings(
-    max_examples=250,
+    max_examples=150,
     deadline=None,
     derandomize=True,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture],
@@ -180,22 +180,7 @@ def test_every_change_of_a_case(prepared: Path, command: str, change: str) -> No
     check([command, "rig_30310", "--set", change])
 
 
-QUICK = (
-    "",
-    "..",
-    "-",
-    "\n",
-    "nul\0",
-    "保" * 100,
-    "1e400",
-    "nan",
-    "9" * 5000,
-    "deep.toml",
-    "folder",
-    "run.h5",
-    "pipe.h5",
-    "nothing",
-)
+QUICK = ("", "-", "nul\0", "1e400", "deep.toml", "run.h5", "pipe.h5", "nothing")
 """Values that are tried in every place each time; the others are tried in all places by the slow tests, and at random by each."""
 
 

@@ -1,4 +1,4 @@
-"""Files that a disk or a transfer has damaged: flipped bits, blocks of zeros, cut ends. Each is refused, or read as it was."""
+"""Files that a disk or a transfer has damaged, in bits, in length: each is refused, or read as it was."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def damaged(data: bytes, count: int, draw: random.Random) -> Iterator[tuple[str,
     size = len(data)
     for number in range(count):
         at = draw.choice((draw.randrange(size), draw.randrange(size), draw.randrange(min(size, 4096))))
-        kind, changed = ("bit", "byte", "zeros", "end")[number % 4], bytearray(data)
+        kind, changed = ("bit", "byte", "zeros", "more", "end")[number % 5], bytearray(data)
         if kind == "bit":
             changed[at] ^= 1 << draw.randrange(8)
         elif kind == "byte":
@@ -63,6 +63,8 @@ def damaged(data: bytes, count: int, draw: random.Random) -> Iterator[tuple[str,
         elif kind == "zeros":
             length = draw.choice((1, 16, 512, 4096))
             changed[at : at + length] = bytes(len(changed[at : at + length]))
+        elif kind == "more":
+            changed[at:at] = draw.randbytes(draw.randrange(1, 64))
         else:
             del changed[draw.choice((at, size - 1, size - draw.randrange(1, 100))) :]
         yield f"{kind} at {at} of {size}", bytes(changed)

@@ -330,16 +330,13 @@ def test_a_packed_file_of_zeros_is_no_damage(tmp_path: Path) -> None:
 # ---- short runs, callbacks, copies ----
 
 
-@pytest.mark.parametrize("records", [1, *(pytest.param(n, marks=pytest.mark.slow) for n in (2, 3, 7, 8, 9))])
-def test_the_shortest_runs_have_a_summary_and_pictures(tmp_path: Path, records: int) -> None:
+@pytest.mark.parametrize("records", [1, 2, 7])
+def test_the_shortest_runs_have_a_summary(tmp_path: Path, records: int) -> None:
     result = trb.Simulation(paper_30310()).run(duration=records * 1e-5, save_every=1e-5)
     values = result.summary()
     assert values["torque"] > 0.0
     assert values["settled"] is False
     assert values["window_end"] > values["window_start"]
-    drawn = {path.stem for path in plot.all(result, tmp_path)}
-    of_free_rings = {name for name, (_, groups) in plot.PICTURES.items() if {"ring", "housing"} & set(groups)}
-    assert set(plot.PICTURES) - of_free_rings - drawn == ({"spectrum"} if len(result) < 8 else set())
     if len(result) < 8:
         with pytest.raises(InputError, match="at least 8 records"):
             plot.all(result, tmp_path, ["spectrum"])
@@ -375,7 +372,7 @@ def test_pictures_need_no_later_matplotlib(monkeypatch: pytest.MonkeyPatch, tmp_
 )
 def test_a_callback_cannot_move_the_simulation(act: Callable[[trb.Simulation], object], tmp_path: Path) -> None:
     """It is told so, and a callback that goes on in spite of it has changed nothing."""
-    reference = trb.Simulation(paper_30310()).run(duration=5e-3, save_every=1e-5, output=tmp_path / "reference.h5")
+    reference = trb.Simulation(paper_30310()).run(duration=2e-3, save_every=1e-5, output=tmp_path / "reference.h5")
     told: list[str] = []
 
     def callback(sim: trb.Simulation) -> None:
@@ -385,7 +382,7 @@ def test_a_callback_cannot_move_the_simulation(act: Callable[[trb.Simulation], o
             told.append(str(error))
 
     sim = trb.Simulation(paper_30310())
-    result = sim.run(duration=5e-3, save_every=1e-5, callback=callback, output=tmp_path / "run.h5")
+    result = sim.run(duration=2e-3, save_every=1e-5, callback=callback, output=tmp_path / "run.h5")
     assert told
     assert all("must not be called while a run goes on" in line for line in told)
     assert result.success
@@ -397,7 +394,7 @@ def test_a_callback_cannot_move_the_simulation(act: Callable[[trb.Simulation], o
 
     other = trb.Simulation(paper_30310())
     with pytest.raises(InputError, match="must not be called"):
-        other.run(duration=5e-3, save_every=1e-5, callback=unguarded, output=tmp_path / "other.h5")
+        other.run(duration=2e-3, save_every=1e-5, callback=unguarded, output=tmp_path / "other.h5")
     assert len(trb.load(tmp_path / "other.h5")) > 100
     act(other)
 

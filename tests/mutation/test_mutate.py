@@ -63,7 +63,7 @@ def test_every_area_has_its_share_and_its_tests() -> None:
 
 
 def test_a_fault_changes_its_place_alone() -> None:
-    for fault in faults.draw(3)[:100]:
+    for fault in faults.draw(1)[250:350]:
         text = (faults.ROOT / fault.file).read_text(encoding="utf-8")
         changed = fault.applied(text)
         assert changed != text

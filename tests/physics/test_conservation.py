@@ -113,7 +113,8 @@ def assert_angular_momentum_stays(result: Result) -> None:
 @pytest.mark.parametrize(
     ("kind", "seed", "duration"),
     [
-        ("rectangles", 1, 2e-3),
+        ("rectangles", 1, 1.2e-3),
+        pytest.param("rectangles", 1, 2e-3, marks=pytest.mark.slow),
         pytest.param("triangles", 1, 2e-3, marks=pytest.mark.slow),
         pytest.param("rectangles", 1, 4e-3, marks=pytest.mark.slow),
         pytest.param("triangles", 1, 3e-3, marks=pytest.mark.slow),
@@ -154,7 +155,7 @@ def test_violent_impacts_keep_angular_momentum(kit: SimpleNamespace) -> None:
     calm = sim.scene.replace(effects=FREE.replace(gravity=False))
     still = Simulation(calm, **kit.tolerances(1e-5))
     still.set_state(sim.state)
-    result = still.run(duration=2.5e-3, save_every=1e-4)
+    result = still.run(duration=1e-3, save_every=1e-4)
     assert result.pocket_force.max() > 500.0
     assert_angular_momentum_stays(result)
 

@@ -230,7 +230,7 @@ def test_a_pit_shows_at_its_order(on: On, line: str) -> None:
 
     def lines(*defects: Defect) -> tuple[trb.Result, Array, float]:
         scene = scene_of(*defects, ring="free", ring_body=ROTOR)
-        result = Simulation(scene).run(revolutions=24, save_every=2e-5)
+        result = Simulation(scene).run(revolutions=16, save_every=2e-5)
         late = result["time"] > 0.08
         acceleration = np.gradient(result["ring_velocity"][late][:, 2], 2e-5)
         frequency, density = observables.spectrum(result["time"][late], acceleration)

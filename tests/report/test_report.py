@@ -251,6 +251,7 @@ def test_frequencies_and_ratings_are_those_of_the_package(text: str, result: trb
     assert values["basic_life_hours"] == sheet.life_hours
 
 
+@pytest.mark.usefixtures("drawn_only")
 def test_a_failed_or_partial_run_still_gets_a_report(tmp_path: Path) -> None:
     scene = trb.cases.scene_30310(1000.0, 3000.0, effects=trb.Effects.paper().replace(bodies="rollers"))
     short = trb.Simulation(scene).run(revolutions=0.2, save_groups=("rollers", "torque"))
@@ -288,6 +289,7 @@ def test_bad_arguments(result: trb.Result, tmp_path: Path) -> None:
         trb.report(result, tmp_path / "none" / "r.html", pictures=["cage_locus"])
 
 
+@pytest.mark.usefixtures("drawn_only")
 def test_the_command(run_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["report", str(run_file), "--title", "Mine & yours"]) == 0
     path = Path(capsys.readouterr().out.strip())

@@ -12,7 +12,7 @@ import pytest
 import trbdyn as trb
 from trbdyn.model.cases import paper_30310
 
-SCHEDULE: dict[str, Any] = {"duration": 0.12, "save_every": 1e-4, "checkpoint_every": 4e-3}
+SCHEDULE: dict[str, Any] = {"duration": 0.06, "save_every": 1e-4, "checkpoint_every": 4e-3}
 
 RUN = """
 import sys
@@ -23,7 +23,7 @@ from trbdyn.model.cases import paper_30310
 result_file.FLUSH_SECONDS = 0.02
 scene = paper_30310(3000.0, 4930.0, start=trb.Start.whirl(0.9))
 print("ready", flush=True)
-trb.Simulation(scene).run(duration=0.12, save_every=1e-4, checkpoint_every=4e-3, output=sys.argv[1])
+trb.Simulation(scene).run(duration=0.06, save_every=1e-4, checkpoint_every=4e-3, output=sys.argv[1])
 """
 
 RESUME = """

@@ -20,7 +20,7 @@ from trbdyn.model.cases import paper_30310
 from trbdyn.run import checkpoint
 from trbdyn.run.checkpoint import Checkpoint, checkpoint_path, next_time, previous_path
 
-EVERY, END = 1.7e-3, 0.01
+EVERY, END = 0.9e-3, 5e-3
 
 
 def scene() -> trb.Scene:
@@ -55,7 +55,7 @@ def cut(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a run that an exception has ended half way."""
     folder = tmp_path_factory.mktemp("cut")
     with pytest.raises(Cut):
-        run(folder / "run.h5", callback=cut_after(0.006))
+        run(folder / "run.h5", callback=cut_after(3e-3))
     return folder
 
 
@@ -136,7 +136,7 @@ def test_every_run_that_ended_early_goes_on(broken: Path, reference: trb.Result)
 
 
 def test_a_run_resumed_and_broken_again(broken: Path, reference: trb.Result) -> None:
-    for later in (0.007, 0.0085):
+    for later in (3.6e-3, 4.3e-3):
         with pytest.raises(Cut):
             trb.resume(broken, callback=cut_after(later))
     same(trb.resume(broken), reference)
@@ -209,7 +209,7 @@ def test_runs_without_a_schedule_cannot_be_resumed(tmp_path: Path) -> None:
 def test_a_checkpoint_of_another_run_is_refused(broken: Path, tmp_path: Path) -> None:
     other = tmp_path / "other.h5"
     with pytest.raises(Cut):
-        run(other, callback=cut_after(0.005))
+        run(other, callback=cut_after(2e-3))
     checkpoint_path(other).replace(checkpoint_path(broken))
     with pytest.raises(FileError, match="belongs to another run"):
         trb.resume(broken)

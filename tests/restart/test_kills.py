@@ -152,7 +152,7 @@ resource.setrlimit(resource.RLIMIT_FSIZE, (MOST, MOST))
 
 
 @pytest.mark.parametrize(
-    "limit", [2_000_000, *(pytest.param(size, marks=pytest.mark.slow) for size in (2_500_000, 4_000_000))]
+    "limit", [1_500_000, *(pytest.param(size, marks=pytest.mark.slow) for size in (1_000_000, 2_000_000))]
 )
 def test_a_full_disk_loses_nothing(tmp_path: Path, uninterrupted: trb.Result, limit: int) -> None:
     path = tmp_path / "run.h5"

@@ -20,9 +20,10 @@ QUICK = 12
 
 
 def chosen() -> list[Hard]:
-    """A pair, and others with every change of the catalogue, the same ones for everybody."""
+    """A pair, and others with every change of the catalogue, the same ones for everybody, without one that takes seconds."""
     pair = next(hard for hard in PAIRS if hard.name == "pair_unbalance_10000_rpm")
-    return [pair, *random.Random(5).sample([hard for hard in HARD if not hard.slow and hard.error is None], QUICK)]
+    drawn = random.Random(5).sample([hard for hard in HARD if not hard.slow and hard.error is None], QUICK)
+    return [pair, *(hard for hard in drawn if hard.name != "deep_interference")]
 
 
 def test_the_catalogue_is_whole() -> None:
