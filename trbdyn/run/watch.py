@@ -121,7 +121,7 @@ class Suspect:
     until : float
         Its end (s).
     jump : Span, optional
-        The latest span before it in which a load or a speed had a knot.
+        The latest span before it in which a jump of a load or a speed began.
     """
 
     size: float
@@ -142,7 +142,7 @@ class Account:
     suspect: Suspect | None = None
     """The span in which the integration took most from vibrations."""
     jump: Span | None = None
-    """The latest span in which a load or a speed had a knot."""
+    """The latest span in which a jump of a load or a speed began."""
     probed: Probe | None = None
     notable: bool = True
     probe_steps: int = 0
@@ -175,7 +175,7 @@ class Watch:
         self._going_on = going_on
         self._suppressed = 0
         self._noted: set[str] = set()
-        self._knots = _knots(sim)
+        self._jumps, self._jumped = _jumps(sim)
         now, time = self._energies(), sim._core.time
         if bearing.name not in sim._accounts:
             sim._accounts[bearing.name] = Account(Span(time, now, state=sim._core.state()), small_since=time)
@@ -209,7 +209,7 @@ class Watch:
         # windows of a short run are too short to see a vibration in
         if time - self._vibrating.since >= max(self._length, vibrations.SHORTEST):
             self._suspect(self._vibrating, now, time)
-            if np.any((self._knots > self._vibrating.since) & (self._knots <= time)):
+            if np.any((self._jumps > self._vibrating.since) & (self._jumps <= time)):
                 self._account.jump = self._vibrating
             self._vibrating = Span(time, now, state=self._sim._core.state())
         if final and time > self._run.since:
@@ -389,24 +389,24 @@ class Watch:
         """Where a probe begins (s), the state there, its length and what is left to vibrations to grow (s).
 
         A jump of a load or speed excites vibrations at once: the piece begins there, where the run has not lost them yet. What
-        follows the jump is compared up to the next knot, as other loads have other losses.
+        follows the jump is compared up to the next one, as other loads have other losses.
         """
         span = suspect.span
         if span.state is None:
             return None
         usual = span.since, span.state, length, vibrations.GROWTH
-        ends = np.concatenate([[-math.inf], self._knots, [math.inf]])
+        ends = np.concatenate([[-math.inf], self._jumps, [math.inf]])
         common = np.minimum(ends[1:], suspect.until) - np.maximum(ends[:-1], span.since)
         first, last = ends[(place := int(np.argmax(common))) : place + 2]
         begin = span if first >= span.since else suspect.jump
         rest = last - span.since
-        if common[place] < vibrations.SHORTEST or last - first < 2.0 * vibrations.SHORTEST:
+        if common[place] < vibrations.SHORTEST:
             return usual
         if begin is None or begin.state is None or begin.since > first or span.since - first > vibrations.LENGTH:
             return (*usual[:2], min(length, rest), usual[3]) if rest > 2.0 * vibrations.SHORTEST else usual
-        jump = max(float(self._knots[self._knots >= first - vibrations.SHORTEST][0]), begin.since)
-        state = vibrations.reached(self._sim, begin.since, begin.state, jump, most)
-        return usual if state is None else (jump, state, min(length, last - jump), float(first) - jump)
+        state = vibrations.reached(self._sim, begin.since, begin.state, float(first), most)
+        growth = float(self._jumped[place - 1] - first)
+        return usual if state is None else (float(first), state, min(length, last - first), growth)
 
     def _damped(self, now: dict[str, float]) -> bool:
         """Whether contacts have damped anything since the simulation began."""
@@ -510,12 +510,14 @@ class Watch:
             warnings.warn(self._bearing.said + text, RunWarning, stacklevel=2)
 
 
-def _knots(sim: Simulation) -> Array:
-    """Times at which a load or a speed that does not repeat has a knot (s)."""
+def _jumps(sim: Simulation) -> tuple[Array, Array]:
+    """Where jumps of loads and speeds that do not repeat begin and end (s): knots close together are one."""
     subject = sim.subject
     given = () if isinstance(subject, Seating) else subject.quantities().values()
     times = [q.times for q in given if isinstance(q, History) and not q.repeats]
-    return np.unique(np.concatenate([[], *times]))
+    knots = np.unique(np.concatenate([[], *times]))
+    apart = np.diff(knots, prepend=-math.inf, append=math.inf) > 2.0 * vibrations.SHORTEST
+    return knots[apart[:-1]], knots[apart[1:]]
 
 
 def _missing(then: dict[str, float], now: dict[str, float]) -> tuple[float, float, float]:
