@@ -117,7 +117,8 @@ def elements(bearing: trb.Bearing) -> dict[str, Any]:
     frequency, _ = built.solid.natural(N_MODES)
     moved = built.solid.static(FORCE * built.pushes()[:, [face_of(bearing)]])
     roots = (built.at_roots @ moved).reshape(-1, 2, 6)
-    return {"frequency": frequency, "root": roots, "stress": (built.stress_of @ moved)[:, 0]}
+    at_roots = slice(8 * bearing.n_rollers)  # the rims follow
+    return {"frequency": frequency, "root": roots, "stress": (built.stress_of @ moved)[at_roots, 0]}
 
 
 def solid(bearing: trb.Bearing, size: float) -> dict[str, Any]:

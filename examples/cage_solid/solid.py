@@ -172,7 +172,7 @@ def modes_of(
     shapes: np.ndarray,
     stresses: np.ndarray,
 ) -> CageModes:
-    """What trbdyn needs of the modes: motion of the faces by least squares over their nodes, stress at the bars' roots."""
+    """What trbdyn needs of the modes: motion of the faces by least squares over their nodes, stress at the corners."""
     built, radius = cage_solid(bearing), 0.5 * bearing.pitch_diameter
     weights = lumped_mass(nodes, tets, float(bearing.cage_material.density or 0.0))
     modal = np.einsum("n,mnk,mnk->m", weights, shapes, shapes)
@@ -195,11 +195,7 @@ def modes_of(
         moved = (shapes[:, on] @ axes.T).reshape(len(shapes), -1)
         motions[:, number] = np.linalg.lstsq(system, moved.T, rcond=None)[0].T
     at = [int(np.argmin(np.linalg.norm(nodes - place, axis=1))) for place in built.corner_places]
-    # the bars of a cone: their direction is that of the wall at their angle
-    around = np.arctan2(built.corner_places[:, 1], built.corner_places[:, 0])
-    bar = (np.round(around * bearing.n_rollers / (2 * math.pi) - 0.5) + 0.5) * 2 * math.pi / bearing.n_rollers
-    sine, cosine = math.sin(bearing.geometry.roller_axis_angle), math.cos(bearing.geometry.roller_axis_angle)
-    x, y, z = sine * np.cos(bar), sine * np.sin(bar), np.full(len(bar), cosine)
+    x, y, z = built.directions.T
     tensor = stresses[:, at]
     direction = np.stack([x * x, y * y, z * z, 2 * x * y, 2 * y * z, 2 * z * x])
     along = np.einsum("mpc,cp->mp", tensor, direction)

@@ -1,4 +1,4 @@
-"""The finite-element model of a bearing's cage: faces of its pockets and the roots of its bars
+"""The finite-element model of a bearing's cage: faces of its pockets, and stress at their corners
 (docs/theory/cage.md#a-cage-of-finite-elements).
 """
 
@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.base.validation import as_whole_number
-from trbdyn.cage.solid import Elasticity, Solid, crossed, stiffness_of
-from trbdyn.cage.wall_mesh import WallMesh, wall_mesh
+from trbdyn.cage.sections import bar_sections, forces_on, nominal_stress, rim_sections
+from trbdyn.cage.solid import Elasticity, Solid, crossed
+from trbdyn.cage.wall_mesh import wall_mesh
 from trbdyn.errors import InputError
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.cage_body import Wall
@@ -22,9 +23,6 @@ from trbdyn.model.pocket import Face, every_surface
 
 FloatArray = NDArray[np.float64]
 
-ENDS: Final = ("small", "large")
-SIDES: Final = ("trailing", "leading")
-SURFACES: Final = ("outer", "inner")
 PATCH: Final = 0.1
 """Part of the wall that follows a face: surfaces whose middles are farther from the face's middle than the nearest one by this
 share of the face's length."""
@@ -46,17 +44,18 @@ class CageSolid:
     at_faces : sparse array, shape (6 F, 3 N)
         Displacement of each face's middle and rotation of the face, in the axes n, t, a of its pocket, from the displacements.
     corners : tuple of str
-        Names of the points at the bars' roots.
+        Names of the points at the corners of the pockets.
     corner_places : ndarray, shape (P, 3)
         Where they are (m).
+    stress_of : sparse array, shape (P, 3 N)
+        Stress at the corners (Pa) from the displacements: nominal along bar and rim, tension and bending about both axes, first
+        at the roots of all bars, then in the rims beside the windows' corners; of a cage as drawn the normal stress of the solid
+        in the notch.
+    directions : ndarray, shape (P, 3)
+        Directions of that stress.
     at_roots : sparse array, shape (12 Z, 3 N)
         Force (N) and moment (N m) on each bar at its small and its large end, along, across and through the bar, from the
         displacements. Bar k lies behind pocket k in the direction of rotation. None of a cage as drawn.
-    stress_of : sparse array, shape (P, 3 N)
-        Stress at the corners (Pa) from the displacements: nominal along the bar, tension and bending about both axes; of a cage
-        as drawn the normal stress of the solid in the notch.
-    directions : ndarray, shape (P, 3), optional
-        Directions of the stress at the corners of a cage as drawn.
     """
 
     solid: Solid
@@ -65,8 +64,8 @@ class CageSolid:
     corners: tuple[str, ...]
     corner_places: FloatArray
     stress_of: Any
+    directions: FloatArray
     at_roots: Any = None
-    directions: FloatArray | None = None
 
     def coriolis(self, shapes: FloatArray) -> FloatArray:
         """Coriolis forces between motions, shape (M, M): on the first one, over the rate of the second one and the cage's angular
@@ -112,6 +111,8 @@ def cage_solid(bearing: Bearing, *, fineness: int = 1, cracked_bars: Iterable[in
     >>> bool(frequencies[0] > 1e3)
     True
     """
+    from scipy.sparse import vstack
+
     try:
         parts = as_whole_number(fineness)
     except ValueError as error:
@@ -127,25 +128,18 @@ def cage_solid(bearing: Bearing, *, fineness: int = 1, cracked_bars: Iterable[in
     mesh = wall_mesh(wall, fineness=parts, cracked_bars=frozenset(cracked_bars))
     solid = Solid.of(mesh.corners, mesh.elements, made)
     faces = tuple(every_surface(bearing))
-    centres, axes = _roots(wall)
-    at_roots = _at_roots(solid, mesh, centres, axes)
-    names = tuple(
-        f"pocket {(k + (side == 'leading')) % wall.n_pockets}, {'trailing' if side == 'leading' else 'leading'} bar, "
-        f"{end} end, {surface}"
-        for k in range(wall.n_pockets)
-        for end in ENDS
-        for side in SIDES
-        for surface in SURFACES
-    )
-    nominal, places = _corners(wall, centres, axes)
+    bars, rims = list(bar_sections(wall, mesh)), list(rim_sections(wall, mesh))
+    at_roots = forces_on(solid, mesh.bar, bars)
+    of_bars, of_rims = nominal_stress(bars), nominal_stress(rims)
     return CageSolid(
         solid=solid,
         faces=faces,
         at_faces=at_faces(bearing, faces, solid),
-        corners=names,
-        corner_places=places,
+        corners=of_bars[1] + of_rims[1],
+        corner_places=np.concatenate([of_bars[2], of_rims[2]]),
+        directions=np.concatenate([of_bars[3], of_rims[3]]),
         at_roots=at_roots,
-        stress_of=nominal @ at_roots,
+        stress_of=vstack([of_bars[0] @ at_roots, of_rims[0] @ forces_on(solid, mesh.rim, rims)]),
     )
 
 
@@ -213,53 +207,3 @@ def pocket_axes(bearing: Bearing, pocket: int) -> FloatArray:
             [sine * around[0], sine * around[1], cosine],
         ]
     )
-
-
-def _roots(wall: Wall) -> tuple[FloatArray, FloatArray]:
-    """Middles of the bars' roots, shape (Z, 2, 3) (m), and axes along, across and through the bars, shape (Z, 3, 3)."""
-    angle = (2.0 * np.arange(wall.n_pockets) + 1.0) * math.pi / wall.n_pockets
-    c, s, none = np.cos(angle), np.sin(angle), np.zeros(wall.n_pockets)
-    rho, z = wall.place(np.array([wall.small_edge, wall.large_edge]), np.array(wall.height))
-    centres = np.stack([np.outer(c, rho), np.outer(s, rho), np.broadcast_to(z, (wall.n_pockets, 2))], axis=-1)
-    along = np.stack([math.sin(wall.angle) * c, math.sin(wall.angle) * s, none + math.cos(wall.angle)], axis=-1)
-    across = np.stack([-s, c, none], axis=-1)
-    return centres, np.stack([along, across, np.cross(along, across)], axis=1)
-
-
-def _at_roots(solid: Solid, mesh: WallMesh, centres: FloatArray, axes: FloatArray) -> Any:
-    """Forces and moments at the roots from the displacements: sums of forces at the nodes of the bars' elements, sparse, shape
-    (12 Z, 3 N).
-    """
-    import skfem
-    from scipy.sparse import lil_array
-
-    basis, grid = solid.basis, solid.basis.mesh
-    bars = skfem.CellBasis(grid, basis.elem, quadrature=basis.quadrature, elements=np.flatnonzero(mesh.bar >= 0))
-    sums = lil_array((12 * len(centres), solid.nodes.size))
-    for end, corners in enumerate(mesh.roots):
-        cut = np.flatnonzero(np.isin(grid.facets, corners).all(axis=0))
-        bar_of = mesh.bar[grid.f2t[:, cut]].max(axis=0)
-        for bar, centre in enumerate(centres[:, end]):
-            for node in basis.get_dofs(facets=cut[bar_of == bar]).flatten():
-                arm = crossed(solid.nodes[node] - centre)
-                row = 12 * bar + 6 * end
-                sums[row : row + 6, 3 * node : 3 * node + 3] = np.concatenate([axes[bar], axes[bar] @ arm])
-    return sums.tocsr() @ stiffness_of(bars, solid.made)
-
-
-def _corners(wall: Wall, centres: FloatArray, axes: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Nominal stress at the corners of the roots from forces and moments, shape (P, 12 Z), and their places, shape (P, 3)."""
-    count, thickness = wall.n_pockets, wall.thickness
-    stress, places = np.zeros((count, 2, 2, 2, count, 2, 6)), np.zeros((count, 2, 2, 2, 3))
-    for end, (edge, sign) in enumerate(((wall.small_edge, -1.0), (wall.large_edge, 1.0))):
-        width = wall.bar_width(edge)
-        for side, across in enumerate((-0.5, 0.5)):
-            for surface, through in enumerate((-0.5, 0.5)):
-                parts = np.zeros(6)
-                parts[0] = sign / (width * thickness)
-                parts[4] = sign * through * 12.0 / (width * thickness**2)
-                parts[5] = -sign * across * 12.0 / (thickness * width**2)
-                stress[range(count), end, side, surface, range(count), end] = parts
-                off = across * width * axes[:, 1] + through * thickness * axes[:, 2]
-                places[:, end, side, surface] = centres[:, end] + off
-    return stress.reshape(8 * count, 12 * count), places.reshape(-1, 3)

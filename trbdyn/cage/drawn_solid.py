@@ -12,7 +12,8 @@ from typing import Any, Final
 import numpy as np
 
 from trbdyn.base.own_files import digest_of
-from trbdyn.cage.cage_solid import ENDS, SURFACES, CageSolid, at_faces, cage_solid, elasticity, pocket_axes
+from trbdyn.cage.cage_solid import CageSolid, at_faces, cage_solid, elasticity, pocket_axes
+from trbdyn.cage.sections import ENDS, SURFACES
 from trbdyn.cage.solid import EDGES, FloatArray, IntArray, Solid
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.bearing import Bearing
@@ -98,6 +99,7 @@ def drawn_solid(bearing: Bearing, *, fineness: float = 1.0) -> CageSolid:
         corners=(),
         corner_places=np.zeros((0, 3)),
         stress_of=None,
+        directions=np.zeros((0, 3)),
     )
     names, vertices, directions = _corners(bearing, built)
     return CageSolid(

@@ -92,7 +92,7 @@ def _at_once(
 
 @lru_cache(maxsize=8)
 def stress_at_rest(bearing: Bearing, elastic: ElasticCage) -> FloatArray:
-    """Static stress at the bars' roots of the finite-element model for a unit force on each face of each pocket, shape (F, P)
+    """Static stress at the corners of the finite-element model for a unit force on each face of each pocket, shape (F, P)
     (Pa/N).
     """
     built, _, _ = _natural(bearing, elastic)

@@ -1,5 +1,5 @@
-"""Stress at the roots of a cage's bars over time, its cycles and their damage
-(docs/theory/cage.md#stress-at-the-roots-of-the-bars).
+"""Stress at the corners of a cage's pockets over time, its cycles and their damage
+(docs/theory/cage.md#stress-at-the-corners-of-the-pockets).
 
 Modes that are left out of a simulation hardly move the cage, but they carry most of the stress near a force: for a force on a
 bar, the lowest 20 give less than half of it. They follow the force without delay, so their part is static: what the finite
@@ -32,7 +32,7 @@ ACTS_NOW: Final = 0.3
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CageStress:
-    """Normal stress along the bars at their roots.
+    """Normal stress at the corners of the pockets: along the bars at their roots, and along the rims beside the windows.
 
     Attributes
     ----------

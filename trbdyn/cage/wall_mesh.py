@@ -39,14 +39,21 @@ class WallMesh:
         Corners of the hexahedra, in the order of scikit-fem.
     bar : ndarray, shape (E,)
         Bar of each element; -1 in a rim. Bar k lies behind pocket k in the direction of rotation.
+    rim : ndarray, shape (E,)
+        Half of a rim before a window that an element is of: 4 k + 2 (large rim) + (the half at the leading bar) of pocket k, else
+        -1. The half reaches to the middle of the window's rounded corner.
     roots : tuple of ndarray
         Corners of the bars' cross-sections at the small, and at the large ends of the windows.
+    rim_cuts : ndarray
+        Corners of the rims' cross-sections through the middles of the windows' rounded corners.
     """
 
     corners: FloatArray
     elements: IntArray
     bar: IntArray
+    rim: IntArray
     roots: tuple[IntArray, IntArray]
+    rim_cuts: IntArray
 
 
 def wall_mesh(wall: Wall, *, fineness: int = 1, cracked_bars: frozenset[int] = frozenset()) -> WallMesh:
@@ -161,4 +168,16 @@ def _cells(
     elements = elements.reshape(-1, 8)
     inside = (whole >= 0)[:, None]
     roots = tuple(np.unique(elements[inside & (each[..., 1] == at)]) for at in (bar.start, bar.stop - 1))
-    return WallMesh(corners.reshape(-1, 3)[used % number.size], elements, whole, (roots[0], roots[1]))
+    before = (part != 1) & ~at_bar
+    leading = place < window_columns
+    half = 4 * ((column // columns + ~leading) % count) + (part + leading)
+    rim = np.where(before, half, -1)[there]
+    borders = np.isin(each[..., 0] % columns, (window_columns, columns - window_columns))
+    return WallMesh(
+        corners=corners.reshape(-1, 3)[used % number.size],
+        elements=elements,
+        bar=whole,
+        rim=rim,
+        roots=(roots[0], roots[1]),
+        rim_cuts=np.unique(elements[(rim >= 0)[:, None] & borders]),
+    )

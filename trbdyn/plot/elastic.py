@@ -1,4 +1,4 @@
-"""Pictures of a cage that deforms: its shape, and the stress at the roots of its bars."""
+"""Pictures of a cage that deforms: its shape, and the stress at the corners of its pockets."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def cage_shape(result: Result, record: int | None = None, factor: float | None =
 
 
 def cage_stress(result: Result, ax: Axes | None = None, *, points: int = 3, notch_factor: float = 1.0) -> Axes:
-    """Stress at the roots of the bars with the largest stress, over time.
+    """Stress at the corners of pockets with the largest stress, over time.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def cage_stress(result: Result, ax: Axes | None = None, *, points: int = 3, notc
         raise InputError.of("points", points, "must be from 1 to 6")
     found = result.cage_stress(notch_factor=notch_factor)
     worst = np.argsort(-np.abs(found.stress).max(axis=0))[:points]
-    with canvas(ax, (7.0, 3.4), "Stress at the roots of the cage's bars") as ax:
+    with canvas(ax, (7.0, 3.4), "Stress at the corners of the cage's pockets") as ax:
         for point, colour in zip(worst, COLOURS, strict=False):
             ax.plot(
                 1e3 * found.time,
@@ -115,6 +115,6 @@ def cage_stress(result: Result, ax: Axes | None = None, *, points: int = 3, notc
                 linewidth=0.8,
                 label=found.point_name[point],
             )
-        ax.set(xlabel="time (ms)", ylabel="stress along the bar (MPa)")
+        ax.set(xlabel="time (ms)", ylabel="stress along bar or rim (MPa)")
         ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=1, frameon=False)
     return ax

@@ -287,8 +287,8 @@ class Derived(ABC):
         return replace(found, peak=self.peaks["pocket_force_peak"], mean=self.peaks["pocket_force_mean"])
 
     def cage_stress(self, *, notch_factor: float = 1.0) -> CageStress:
-        """Stress at the roots of the bars of an elastic cage at every record, with cycles and damage; records must be close
-        enough to follow its vibrations.
+        """Stress at the corners of the pockets of an elastic cage at every record, in bars and rims, with cycles and damage;
+        records must be close enough to follow its vibrations.
 
         Parameters
         ----------
