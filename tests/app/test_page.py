@@ -90,23 +90,23 @@ def test_a_wrong_unit_is_said_at_its_field(user: Any, shared: Any) -> None:
     user.browser.wait("!document.querySelector('.q-field--error')")
 
 
-def test_a_run_can_be_stopped_and_survives_the_browser(user: Any, server: Any) -> None:
-    opened(user, server)
+def test_a_run_can_be_stopped_and_survives_the_browser(user: Any, shared: Any) -> None:
+    opened(user, shared)
     user.click("tab.run")
     user.type("run.revolutions", "1000000")
     user.click("run")
     user.browser.wait("/ ms of /.test(document.querySelector('[data-path=said]').textContent)")
     user.browser.call("Page.navigate", url="about:blank")
-    opened(user, server)  # what was typed and the run are still there
+    opened(user, shared)  # what was typed and the run are still there
     user.click("tab.run")
     user.browser.wait("document.querySelector('[data-path=\"run.revolutions\"]')?.value == '1000000'")
     assert "run: " in user.text("said")
     user.click("stop")
     finished(user)
     assert "run stopped: stopped by the user" in user.text("said")
-    folder = next((server.folder / "runs").iterdir())
-    assert len(trb.load(folder / "run.h5")) > 1  # what was recorded is kept
-    assert server.process.poll() is None
+    (path,) = (shared.folder / "runs").glob("*/run.h5")
+    assert len(trb.load(path)) > 1  # what was recorded is kept
+    assert shared.process.poll() is None
 
 
 @pytest.mark.slow

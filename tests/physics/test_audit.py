@@ -71,7 +71,7 @@ def closure(result: Result) -> float:
     return float(np.abs(result.energy_balance["residual"]).max()) / result.energy_audit.dissipated
 
 
-LONG = {"paper", "whirl", "ring_displaced", "planar", "boundary", "run_up"}
+LONG = {"paper", "whirl", "ring_displaced", "planar", "dry", "boundary", "run_up"}
 
 
 @pytest.mark.parametrize(
@@ -192,7 +192,7 @@ def unloaded_within(kit: SimpleNamespace, within: float, effects: Effects) -> Re
     return kit.simulate(effects, scenery={"ring": "follows", "axial_load": load}).run(duration=6e-3)
 
 
-SUDDEN = [1e-5, pytest.param(1e-6, marks=pytest.mark.slow), pytest.param(1e-8, marks=pytest.mark.slow), 1e-9]
+SUDDEN = [*(pytest.param(within, marks=pytest.mark.slow) for within in (1e-5, 1e-6, 1e-8)), 1e-9]
 """Times in which the load falls and comes back (s)."""
 
 
