@@ -23,7 +23,7 @@ FINE = ("right", "warned", "chance", "stopped", "refused", "unjudged")
 FOUND = sorted((HERE / "found").glob("*.json"))
 
 
-QUICK = {"filmed": (3,), "guided": (2,), "housed": (4,), "pair": (3,), "outer": (3,), "free": (3,), "cylindrical": (2,)}
+QUICK = {"filmed": (3,), "guided": (2,), "housed": (4,), "pair": (3,), "outer": (3,), "free": (3,), "cylindrical": (1,)}
 QUICK |= {
     "damped": (3,),
     "drop": (1,),
