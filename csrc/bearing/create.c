@@ -393,6 +393,7 @@ void trb_model_free(trb_model *model)
   free(model->nominal_angle);
   free(model->faces);
   free(model->first_face);
+  free(model->planes);
   trb_modes_free(&model->modes);
   trb_form_free(&model->form);
   free(model);

@@ -79,6 +79,13 @@ typedef struct trb_ring_body {
   int    is_outer;
 } trb_ring_body;
 
+/* Planes of facets of a surface, side by side, so that a roller's gaps to them are found in one loop. Places that are left over repeat the last
+ * facet. */
+enum { TRB_PLANES_TOGETHER = 8 };
+typedef struct trb_planes {
+  double origin[3][TRB_PLANES_TOGETHER], normal[3][TRB_PLANES_TOGETHER];
+} trb_planes;
+
 /* A facet of a surface. Facets of one slot make one surface, and follow each other; each point of the roller meets the nearest of them. */
 typedef struct trb_pocket_face {
   trb_polygon surface;          /* in the frame of its pocket; its normal points towards the roller */
@@ -108,6 +115,7 @@ typedef struct trb_model {
   trb_race_nodes   race[TRB_N_RACES];
   trb_pocket_face *faces;      /* all faces, grouped by pocket */
   int             *first_face; /* per pocket, n_rollers + 1 entries: its faces are [first, next first) */
+  trb_planes      *planes;     /* as many as faces: at face i of a surface those of its facets from TRB_PLANES_TOGETHER i on */
   /* constants of the laws */
   double        log_modulus;                   /* ln E' */
   double        log_palmgren;                  /* ln of the load per length of roller and ring at d = 1 m */

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
+
 static trb_status check_face(const trb_face *f, int index, int n_rollers, trb_message *message)
 {
   const double *row = (const double *)f;
@@ -74,6 +76,19 @@ static int has_slot(const trb_model *m, int first, int end, int slot)
   return 0;
 }
 
+/* Puts the planes of a surface side by side. */
+static void fill_planes(const trb_pocket_face *first, trb_planes *planes)
+{
+  for (int group = 0; group * TRB_PLANES_TOGETHER < first->n_facets; group++)
+    for (int i = 0; i < TRB_PLANES_TOGETHER; i++) {
+      const int          number = group * TRB_PLANES_TOGETHER + i;
+      const trb_polygon *p = &first[number < first->n_facets ? number : first->n_facets - 1].surface;
+      trb_planes        *to = &planes[group];
+      to->origin[0][i] = p->origin.x, to->origin[1][i] = p->origin.y, to->origin[2][i] = p->origin.z;
+      to->normal[0][i] = p->normal.x, to->normal[1][i] = p->normal.y, to->normal[2][i] = p->normal.z;
+    }
+}
+
 /* Adds the facets of the slot of a face, which is the first one of them. */
 static trb_status add_surface(trb_model *m, const trb_face *faces, int n_faces, int pocket, int first, int *count, trb_message *message)
 {
@@ -93,6 +108,7 @@ static trb_status add_surface(trb_model *m, const trb_face *faces, int n_faces, 
     measure(to);
     leader->n_facets++;
   }
+  fill_planes(leader, m->planes + (leader - m->faces));
   return TRB_OK;
 }
 
@@ -108,7 +124,9 @@ trb_status trb_pockets_fill_faces(trb_model *m, const trb_face *faces, int n_fac
   }
   m->faces = calloc(total + 1, sizeof *m->faces);
   m->first_face = calloc((size_t)m->n_rollers + 1, sizeof *m->first_face);
-  if (m->faces == NULL || m->first_face == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for %zu pocket faces", total);
+  m->planes = trb_zeros(total + 1, sizeof *m->planes);
+  if (m->faces == NULL || m->first_face == NULL || m->planes == NULL)
+    return trb_fail(message, TRB_ERR_MEMORY, "out of memory for %zu pocket faces", total);
   int count = 0;
   for (int pocket = 0; pocket < m->n_rollers; pocket++) {
     m->first_face[pocket] = count;

@@ -125,21 +125,22 @@ static double sphere_on_face(const trb_model *m, const trb_pocket_face *f, trb_v
   return trb_sphere_on_polygon(&f->surface, centre, h, radius, normal);
 }
 
-static void flank_on_face(const trb_model *m, const trb_pocket_face *f, trb_pocket_view *p, int roller, int exact, trb_counters *counters,
+static void flank_on_face(const trb_model *m, const trb_facets *near, trb_pocket_view *p, int roller, int exact, trb_counters *counters,
                           trb_load *load, trb_pocket_sums *sums)
 {
+  const trb_pocket_face *f = near->first;
   const double *centre = m->centre + (size_t)roller * (size_t)m->n_lanes, *sphere = m->sphere + (size_t)roller * (size_t)m->n_lanes;
   const double *weight = m->race[TRB_RACE_OUTER].weight;
   const double  middle = trb_polygon_height(&f->surface, p->x), along = trb_dot(p->a, f->surface.normal), reach = m->pocket_film;
-  trb_facets    near;
-  if (f->n_facets > 1) near = trb_facets_near_flank(m, f, p, roller, exact);
+  double        least = -reach; /* interference up to which a node carries nothing */
+  if (exact) least = -INFINITY;
   for (int k = 0; k < m->n_nodes; k++) {
     const double           h = middle + centre[k] * along;
     const trb_pocket_face *facet = f;
     trb_vec3               normal;
     const trb_vec3         c = trb_axpy(p->x, centre[k], p->a);
     double                 d;
-    if (f->n_facets > 1) d = trb_facets_nearest(&near, c, sphere[k], &facet, &normal);
+    if (f->n_facets > 1) d = trb_facets_nearest(near, c, sphere[k], least, &facet, &normal);
     else if (h >= sphere[k] + reach && !exact) continue;
     else d = sphere_on_face(m, f, c, h, sphere[k], exact || reach > 0.0, &normal);
     sums->deepest = trb_max(sums->deepest, d);
@@ -158,16 +159,16 @@ static trb_vec3 end_sphere(const trb_model *m, const trb_pocket_view *p)
   return trb_axpy(p->x, m->surfaces.end[TRB_END_LARGE].place, p->a);
 }
 
-static void large_end_on_face(const trb_model *m, const trb_pocket_face *f, trb_pocket_view *p, int exact, trb_counters *counters,
+static void large_end_on_face(const trb_model *m, const trb_facets *near, trb_pocket_view *p, int exact, trb_counters *counters,
                               trb_load *load, trb_pocket_sums *sums)
 {
+  const trb_pocket_face *f = near->first;
   const trb_geometry    *g = &m->geometry;
   const trb_vec3         c = end_sphere(m, p);
-  const trb_facets       all = {f, f->n_facets, TRB_ALL_FACETS, {0}};
   const trb_pocket_face *facet = f;
   trb_vec3               normal;
   double                 d;
-  if (f->n_facets > 1) d = trb_facets_nearest(&all, c, g->sphere_radius, &facet, &normal);
+  if (f->n_facets > 1) d = trb_facets_nearest(near, c, g->sphere_radius, -INFINITY, &facet, &normal);
   else d = sphere_on_face(m, f, c, trb_polygon_height(&f->surface, c), g->sphere_radius, exact, &normal);
   sums->deepest = d;
   if (!(d > 0.0)) return;
@@ -222,20 +223,50 @@ static double facet_gap(const trb_model *m, const trb_pocket_face *f, const trb_
   return trb_max(plane, trb_norm(trb_sub(f->middle, c)) - f->extent - m->geometry.sphere_radius);
 }
 
-/* Lower bound of the gap of a surface. */
-static double face_gap(const trb_model *m, const trb_pocket_face *f, const trb_pocket_view *p, int roller)
+/* Lower bound of the gap of several facets. Only those whose plane is reached are looked at one by one. */
+static double facets_gap(const trb_model *m, const trb_pocket_face *f, const trb_pocket_view *p, int roller, trb_near_facets *list,
+                         trb_facets *near)
 {
-  double gap = INFINITY;
-  for (int j = 0; j < f->n_facets; j++) gap = trb_min(gap, facet_gap(m, f + j, p, roller, f->n_facets > 1));
+  const int         is_flank = f->part == TRB_PART_FLANK;
+  const trb_sphere  large = {0.0, m->geometry.sphere_radius}, larges[2] = {large, large};
+  const trb_sphere *spheres = is_flank ? &m->end_spheres[2 * roller] : larges;
+  const trb_vec3    point = is_flank ? p->x : end_sphere(m, p);
+  double            gap = INFINITY;
+  for (int j = 0; j < f->n_facets; j += TRB_PLANES_TOGETHER) {
+    const trb_planes *planes = &m->planes[f - m->faces + j / TRB_PLANES_TOGETHER];
+    const double      least = trb_spheres_to_planes(planes, point, p->a, spheres, is_flank ? m->pocket_film : 0.0);
+    if (least > 0.0) {
+      gap = trb_min(gap, least);
+      continue;
+    }
+    for (int k = j; k < j + TRB_PLANES_TOGETHER && k < f->n_facets; k++) {
+      const double of_facet = facet_gap(m, f + k, p, roller, 1);
+      gap = trb_min(gap, of_facet);
+      if (!(of_facet > 0.0)) trb_add_near(list, near, k);
+    }
+  }
   return gap;
 }
 
-static trb_pocket_sums face_forces(const trb_model *m, const trb_pocket_face *f, trb_pocket_view *p, int roller, int exact,
+/* Lower bound of the gap of a surface. Facets that the flank may touch are put on a list; at the ends all count, as the exact gap is wanted. */
+static double face_gap(const trb_model *m, const trb_pocket_face *f, const trb_pocket_view *p, int roller, trb_near_facets *list,
+                       trb_facets *near)
+{
+  double gap = INFINITY;
+  *near = (trb_facets){.first = f, .near = list->number + list->n, .n_facets = f->n_facets};
+  if (f->part != TRB_PART_FLANK) near->n = TRB_ALL_FACETS;
+  if (f->part != TRB_PART_SMALL_END && f->n_facets > 1) return facets_gap(m, f, p, roller, list, near);
+  for (int j = 0; j < f->n_facets; j++) gap = trb_min(gap, facet_gap(m, f + j, p, roller, 0));
+  return gap;
+}
+
+static trb_pocket_sums face_forces(const trb_model *m, const trb_facets *near, trb_pocket_view *p, int roller, int exact,
                                    trb_counters *counters, trb_load *load)
 {
-  trb_pocket_sums sums = {0.0, 0.0, -INFINITY};
-  if (f->part == TRB_PART_FLANK) flank_on_face(m, f, p, roller, exact, counters, load, &sums);
-  else if (f->part == TRB_PART_LARGE_END) large_end_on_face(m, f, p, exact, counters, load, &sums);
+  const trb_pocket_face *f = near->first;
+  trb_pocket_sums        sums = {0.0, 0.0, -INFINITY};
+  if (f->part == TRB_PART_FLANK) flank_on_face(m, near, p, roller, exact, counters, load, &sums);
+  else if (f->part == TRB_PART_LARGE_END) large_end_on_face(m, near, p, exact, counters, load, &sums);
   else small_end_on_face(m, f, p, counters, load, &sums);
   return sums;
 }
@@ -256,22 +287,31 @@ static void note_gap(trb_gaps *gaps, const trb_pocket_face *f, double gap)
   *of = trb_min(*of, gap);
 }
 
-/* Lower bound of the gap of a face, deformed or not. Where it is deformed, its place is kept in a shift. */
-static double gap_of(const trb_model *m, const trb_pocket_face *f, const trb_pocket_view *p, const trb_deformed *deformed, int roller,
-                     trb_face_shift *shift)
+/* A surface of a pocket, and how near its roller is. */
+typedef struct near_surface {
+  trb_facets     facets;
+  double         gap;   /* lower bound, m */
+  trb_face_shift shift; /* its place, where it is deformed */
+} near_surface;
+
+/* Finds the gap of a surface, deformed or not. */
+static void look_at(const trb_model *m, const trb_pocket_face *f, const trb_pocket_view *p, const trb_deformed *deformed, int roller,
+                    trb_near_facets *list, near_surface *surface)
 {
   trb_pocket_view seen;
-  if (deformed == NULL) return face_gap(m, f, p, roller);
-  trb_face_place(deformed, (int)(f - m->faces), shift);
-  see_places(p, shift, &seen);
-  return face_gap(m, f, &seen, roller);
+  if (deformed != NULL) {
+    trb_face_place(deformed, (int)(f - m->faces), &surface->shift);
+    see_places(p, &surface->shift, &seen);
+  }
+  surface->gap = face_gap(m, f, deformed != NULL ? &seen : p, roller, list, &surface->facets);
 }
 
-/* The same of its loads. */
-static trb_pocket_sums forces_of(const trb_model *m, const trb_pocket_face *f, trb_pocket_view *p, const trb_deformed *deformed, int roller,
-                                 int exact, trb_counters *counters, trb_load *load, trb_face_shift *shift)
+/* Adds its loads. */
+static trb_pocket_sums forces_of(const trb_model *m, near_surface *surface, trb_pocket_view *p, const trb_deformed *deformed, int roller,
+                                 int exact, trb_counters *counters, trb_load *load)
 {
-  if (deformed == NULL) return face_forces(m, f, p, roller, exact, counters, load);
+  if (deformed == NULL) return face_forces(m, &surface->facets, p, roller, exact, counters, load);
+  trb_face_shift *shift = &surface->shift;
   trb_slopes      slopes;
   trb_pocket_view seen;
   seen.slopes = p->slopes != NULL ? &slopes : NULL;
@@ -279,7 +319,7 @@ static trb_pocket_sums forces_of(const trb_model *m, const trb_pocket_face *f, t
   trb_face_motion(deformed, shift);
   see_places(p, shift, &seen);
   see_motions(p, shift, &seen);
-  const trb_pocket_sums sums = face_forces(m, f, &seen, roller, exact, counters, load);
+  const trb_pocket_sums sums = face_forces(m, &surface->facets, &seen, roller, exact, counters, load);
   if (!(sums.force > 0.0)) return sums;
   add_seen(&seen, shift, deformed, p);
   if (p->slopes == NULL) return sums;
@@ -298,16 +338,16 @@ static inline trb_gaps touch(const trb_model *m, const trb_roller_pose *r, const
   const trb_pocket_face *first = &m->faces[m->first_face[roller]], *end = &m->faces[m->first_face[roller + 1]];
   const trb_gaps         far = {{INFINITY, INFINITY}};
   const int              exact = detail != NULL && detail->pocket_interference != NULL;
-  double                 least[TRB_MOST_SLOTS];
-  trb_face_shift         shifts[TRB_MOST_SLOTS];
+  near_surface           surfaces[TRB_MOST_SLOTS], *last = surfaces;
+  trb_near_facets        list;
   trb_pocket_view        p;
   trb_gaps               gaps = far;
   view_places(m, r, cage, roller, &p);
   counters->pocket_tests += end - first;
-  int surfaces = 0;
-  for (const trb_pocket_face *f = first; f < end; f += f->n_facets, surfaces++) {
-    least[surfaces] = gap_of(m, f, &p, deformed, roller, &shifts[surfaces]);
-    note_gap(&gaps, f, least[surfaces]);
+  list.n = 0;
+  for (const trb_pocket_face *f = first; f < end; f += f->n_facets, last++) {
+    look_at(m, f, &p, deformed, roller, &list, last);
+    note_gap(&gaps, f, last->gap);
   }
   if (trb_gaps_clear(&gaps) && !exact) {
     counters->pocket_culled += end - first;
@@ -318,15 +358,16 @@ static inline trb_gaps touch(const trb_model *m, const trb_roller_pose *r, const
   if (slopes != NULL) *slopes = (trb_slopes){.modal = slopes->modal, .axes = p.axes};
   p.slopes = slopes;
   gaps = far;
-  const trb_pocket_face *f = first;
-  for (int surface = 0; surface < surfaces; f += f->n_facets, surface++) {
-    const double gap = least[surface];
+  for (near_surface *surface = surfaces; surface < last; surface++) {
+    const trb_pocket_face *f = surface->facets.first;
+    const double           gap = surface->gap;
     if (gap > 0.0 && !exact) {
       counters->pocket_culled += f->n_facets;
       note_gap(&gaps, f, gap);
       continue;
     }
-    const trb_pocket_sums sums = forces_of(m, f, &p, deformed, roller, exact, counters, load, &shifts[surface]);
+    if (exact) surface->facets.n = TRB_ALL_FACETS;
+    const trb_pocket_sums sums = forces_of(m, surface, &p, deformed, roller, exact, counters, load);
     note_gap(&gaps, f, f->part == TRB_PART_FLANK ? gap : -sums.deepest);
     if (detail != NULL) add_detail(m, roller, f, &sums, detail);
   }
