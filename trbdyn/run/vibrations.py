@@ -67,8 +67,10 @@ BLOCKS: Final = 8
 """Pieces of a probe after its beginning, whose scatter says how well its difference is known."""
 NOTABLE: Final = 0.02
 """Difference of the loss, or of the mean load of the rollers, from which on a run warns."""
-OPEN: Final = 0.05
-"""Difference that a longer probe must exclude where vibrations grow or are most of the loads."""
+OPEN: Final = 0.1
+"""Difference that a probe must exclude."""
+OPEN_UNCLEAR: Final = 0.05
+"""The same where vibrations grow or are most of the loads."""
 FINER: Final = 0.1
 """Factor of the tolerances where they are those of 'reference' already, or smaller."""
 
@@ -120,10 +122,9 @@ class Probe:
         """Whether a difference is said, see `Difference.notable`."""
         return self.loss.notable(certain=certain) or self.load.notable(certain=certain)
 
-    @property
-    def open(self) -> bool:
-        """Whether it leaves more than `OPEN` possible."""
-        return not max(self.loss.within, self.load.within) <= OPEN
+    def leaves(self, difference: float) -> bool:
+        """Whether it leaves a difference of this size possible."""
+        return not max(self.loss.within, self.load.within) <= difference
 
     def said(self) -> str:
         return (

@@ -345,14 +345,15 @@ class Watch:
         # with next to no damping large vibrations go on growing, and where they are most of the elastic energy a probe scatters
         # with them: a difference within the scatter is then no proof that there is none
         unclear = size > (vibrations.SIZE if share > vibrations.GROWING else vibrations.MOST)
+        most = vibrations.OPEN_UNCLEAR if unclear else vibrations.OPEN
         if size > account.probed_size and self._probe(suspect, vibrations.LENGTH, vibrations.STEPS):
             account.probed_size = size
             account.notable = account.probed is None or (
-                account.probed.notable(certain=not unclear) or (unclear and account.probed.open)
+                account.probed.notable(certain=not unclear) or account.probed.leaves(most)
             )
             if account.notable and account.probed is not None:
                 self._probe(suspect, vibrations.LONGER, vibrations.STEPS_LONGER)
-                account.notable = account.probed.notable(certain=True) or (unclear and account.probed.open)
+                account.notable = account.probed.notable(certain=True) or account.probed.leaves(most)
         if not account.notable:
             return
         damped = self._damped(now)
