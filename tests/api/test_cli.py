@@ -92,6 +92,7 @@ def test_demo_writes_everything(
     assert "1. It turns." in said
 
 
+@pytest.mark.usefixtures("drawn_only")
 def test_run_of_a_shipped_case_with_changes(fake: type[FakeSimulation], tmp_path: Path) -> None:
     words = [
         "run",

@@ -300,7 +300,7 @@ def test_a_result_removed_during_the_run_is_put_back(tmp_path: Path) -> None:
         path.unlink(missing_ok=True)
 
     with pytest.raises(FileError, match="removed by another program; it is put back"):
-        run(path, duration=0.02, checkpoint_every=1e-3, callback=remove)
+        run(path, duration=8e-3, checkpoint_every=1e-3, callback=remove)
     kept = trb.load(path)
     assert len(kept) > 1
     assert trb.resume(path).success, "the run goes on from there"
@@ -371,8 +371,6 @@ def callback(sim):
         raise SystemExit(0)
     if how == "stops":
         return True
-    if how == "exits":
-        sys.exit(0)
     if how == "lives on":
         os.close(1)
         time.sleep(20)
@@ -396,7 +394,7 @@ def forkless(tmp_path_factory: pytest.TempPathFactory) -> trb.Result:
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
-@pytest.mark.parametrize("how", ["goes on", "stops", "raises", "exits", "lives on"])
+@pytest.mark.parametrize("how", ["goes on", "stops", "raises", "lives on"])
 def test_a_forked_child_leaves_the_file_alone(tmp_path: Path, forkless: trb.Result, how: str) -> None:
     """A callback may fork, as a pool of workers does: the child writes nothing, removes nothing and keeps no lock."""
     path = tmp_path / "run.h5"
@@ -505,14 +503,10 @@ def test_resuming_touches_nothing_of_others(tmp_path: Path) -> None:
     run(path, duration=1e-4, overwrite=True).final_time  # noqa: B018
     path.replace(other)
     before = other.read_bytes()
-    with pytest.raises(FileError, match="belongs to another run") if not trb.load(other).success else _nothing():
+    with (
+        pytest.raises(FileError, match="belongs to another run")
+        if not trb.load(other).success
+        else contextlib.nullcontext()
+    ):
         assert trb.resume(other).success
     assert other.read_bytes() == before
-
-
-class _nothing:
-    def __enter__(self) -> None:
-        return None
-
-    def __exit__(self, *error: object) -> None:
-        return None

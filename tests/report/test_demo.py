@@ -10,6 +10,7 @@ import pytest
 from trbdyn.cli import main
 
 
+@pytest.mark.usefixtures("drawn_only")
 def test_demo(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = tmp_path / "demo"
     assert main(["demo", "-o", str(folder), "--revolutions", "3"]) == 0
