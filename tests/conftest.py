@@ -71,6 +71,13 @@ def pytest_sessionstart() -> None:
     executors._processes = done_here
 
 
+def pytest_sessionfinish() -> None:
+    """Another session may follow in this process."""
+    from trbdyn.study import executors
+
+    executors._processes = WORKERS.pop()
+
+
 WORKERS: Final[list[Any]] = []
 """What starts worker processes."""
 
