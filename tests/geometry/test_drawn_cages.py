@@ -66,6 +66,15 @@ def test_the_shipped_cage_through_step(rig: trb.Bearing, lands: Path) -> None:
     np.testing.assert_allclose(drawn, polygons, rtol=1e-6, atol=1e-6 * np.abs(polygons).max())
 
 
+@pytest.mark.slow
+def test_walls_beyond_a_large_play_are_found(drawings: ModuleType, rig: trb.Bearing, tmp_path: Path) -> None:
+    """Faces are kept as far as the roller moves: beyond a play of a twentieth of its diameter the small end has its wall, too."""
+    wide = rig.replace({"cage.play_axial": 0.8e-3})
+    found = read_cage(drawings.write("lands", wide, tmp_path / "wide.step"), wide, tolerance=1e-5)
+    assert found.pockets[0].face("small_end_wall").part == "small_end"
+    assert found.plays["axial"] == pytest.approx(0.8e-3, abs=1e-10)
+
+
 def test_turned_shifted_and_in_inches(drawings: ModuleType, rig: trb.Bearing, lands: Path, tmp_path: Path) -> None:
     path = drawings.write(
         "lands", rig, tmp_path / "moved.step", shift=(12.0, -30.0, 7.0), turn=(0.7, -2.1, 0.3), inches=True

@@ -14,6 +14,7 @@ from trbdyn.errors import FileError, InputError
 from trbdyn.model.drawn.cage import DrawnCage, Recognised, Rim
 from trbdyn.model.drawn.opened import Drawing, DrawnFace, opened
 from trbdyn.model.drawn.placing import Frustum, Place, axis_of, place_of, pockets_of
+from trbdyn.model.drawn.roller import REACHES
 from trbdyn.model.drawn.surfaces import NAMES, Surfaces
 from trbdyn.model.pocket import Face, Pocket
 
@@ -44,10 +45,24 @@ class _Reader:
 
     def __init__(self, drawing: Drawing, bearing: Bearing, tolerance: float, roller_plane: float | None) -> None:
         self.drawing, self.bearing, self.tolerance, self.roller_plane = drawing, bearing, tolerance, roller_plane
-        self.surfaces = Surfaces(drawing, bearing, tolerance)
-        self.roller, self.axes, self.count = self.surfaces.roller, self.surfaces.axes, bearing.n_rollers
+        self.count = bearing.n_rollers
+        self._reach_for(REACHES[0])
+
+    def _reach_for(self, share: float) -> None:
+        reach = share * self.bearing.roller.diameter
+        self.surfaces = Surfaces(self.drawing, self.bearing, self.tolerance, reach)
+        self.roller, self.axes = self.surfaces.roller, self.surfaces.axes
 
     def read(self) -> DrawnCage:
+        """The cage with all faces that rollers reach: faces further away are left out only where plays are smaller."""
+        for share in REACHES:
+            self._reach_for(share)
+            cage = self._read()
+            if max(play for pocket in cage.pockets for play in self._plays(pocket).values()) <= self.roller.reach:
+                break
+        return cage
+
+    def _read(self) -> DrawnCage:
         axis = axis_of(self.drawing)
         found = pockets_of(self.drawing, axis)
         if found != self.count:

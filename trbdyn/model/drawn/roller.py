@@ -19,8 +19,9 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 
 NODES: Final = 101
-REACH: Final = 0.05
-"""How far roller and pocket may move against each other, over the roller's diameter, for the faces that are kept."""
+REACHES: Final = (0.05, 0.1, 0.25)
+"""How far roller and pocket may move against each other, over the roller's diameter, for the faces that are kept: the least one
+that no play is above."""
 WIDE: Final = 1.05
 """Faces at an end of the roller are kept up to this share of the end's radius."""
 END: Final = math.sqrt(0.5)
@@ -29,15 +30,16 @@ END: Final = math.sqrt(0.5)
 
 @dataclass(frozen=True)
 class RollerInPocket:
-    """The nominal roller as its chain of spheres, in the frame of its pocket (m)."""
+    """The nominal roller as its chain of spheres, in the frame of its pocket, and how far it may move against that (m)."""
 
     geometry: Geometry
     diameter: float
+    reach: float
     centres: FloatArray
     radii: FloatArray
 
     @classmethod
-    def of(cls, bearing: Bearing) -> RollerInPocket:
+    def of(cls, bearing: Bearing, reach: float) -> RollerInPocket:
         geometry = bearing.geometry
         half_angle = geometry.roller_half_angle
         half = geometry.apex_to_large_end - geometry.apex_to_mid
@@ -45,7 +47,7 @@ class RollerInPocket:
         radii = 0.25 * (geometry.large_end_diameter + geometry.small_end_diameter) + stations * math.tan(half_angle)
         centres = np.zeros((NODES, 3))
         centres[:, 2] = stations + radii * math.tan(half_angle)
-        return cls(geometry, bearing.roller.diameter, centres, radii / math.cos(half_angle))
+        return cls(geometry, bearing.roller.diameter, reach, centres, radii / math.cos(half_angle))
 
     def gap(self, face: Face, moved: FloatArray) -> float:
         """Gap to a face after the roller has moved (m)."""
@@ -55,11 +57,6 @@ class RollerInPocket:
             centre = np.array([0.0, 0.0, self.geometry.sphere_centre - self.geometry.apex_to_mid]) + moved
             return float(face.distance(centre)) - self.geometry.sphere_radius
         return float(np.min(face.distance(self.centres + moved) - self.radii))
-
-    @property
-    def reach(self) -> float:
-        """How far it may move against its pocket (m)."""
-        return REACH * self.diameter
 
     def is_near(self, points: FloatArray, extents: FloatArray) -> NDArray[np.bool_]:
         """Whether anything within an extent of points in the frame of a pocket is within reach of the roller."""
@@ -112,7 +109,7 @@ class RollerInPocket:
         def gap(by: float) -> float:
             return min(self.gap(face, by * way) for face in faces)
 
-        low, most = 0.0, 0.25 * self.diameter
+        low, most = 0.0, REACHES[-1] * self.diameter
         while low < most:
             left = gap(low)
             if left < 1e-7:

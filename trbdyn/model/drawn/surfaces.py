@@ -29,11 +29,11 @@ MOST_FACETS: Final = 2000
 
 
 class Surfaces:
-    """The surfaces of each pocket, for a place of the cage."""
+    """The surfaces of each pocket, for a place of the cage, as far as a roller can move (m)."""
 
-    def __init__(self, drawing: Drawing, bearing: Bearing, tolerance: float) -> None:
+    def __init__(self, drawing: Drawing, bearing: Bearing, tolerance: float, reach: float) -> None:
         self.drawing, self.bearing, self.tolerance = drawing, bearing, tolerance
-        self.roller = RollerInPocket.of(bearing)
+        self.roller = RollerInPocket.of(bearing, reach)
         self.by_number = {face.number: face for face in drawing.faces}
         angle = bearing.geometry.roller_axis_angle
         sine, cosine = math.sin(angle), math.cos(angle)
