@@ -112,14 +112,17 @@ static trb_status fill_nodes(trb_model *m, const double *drops, trb_message *mes
   return TRB_OK;
 }
 
-/* A flank without profile at both ends of the effective length. */
-static void fill_ends(trb_model *m)
+/* A flank without profile at both ends of the effective length; where a profile adds to the cone, as much thicker as it adds at most. */
+static void fill_ends(trb_model *m, const double *drops)
 {
   const trb_cone *flank = &m->surfaces.flank;
+  double          added = 0.0;
+  for (int k = 0; drops != NULL && k < m->n_nodes; k++) added = fmax(added, -drops[k] - profile_drop(m, m->station[k]));
   for (int j = 0; j < m->n_rollers; j++)
     for (int end = 0; end < 2; end++) {
       const double station = (end - 0.5) * m->params.effective_length;
-      m->end_spheres[2 * j + end] = trb_sphere_inscribed(flank, station, trb_cone_radius(flank, station) + 0.5 * m->diameter_deviation[j]);
+      m->end_spheres[2 * j + end] =
+          trb_sphere_inscribed(flank, station, trb_cone_radius(flank, station) + 0.5 * m->diameter_deviation[j] + added);
     }
 }
 
@@ -307,7 +310,7 @@ static trb_status fill(trb_model *m, const double *deviation, const trb_face *fa
   if ((status = fill_nodes(m, NULL, message)) != TRB_OK) return status;
   if ((status = trb_pockets_fill_faces(m, faces, n_faces, message)) != TRB_OK) return status;
   m->n_losses = losses_of(&m->params);
-  fill_ends(m);
+  fill_ends(m, NULL);
   fill_constants(m);
   fill_land(m);
   trb_pockets_place(m);
@@ -344,6 +347,7 @@ trb_status trb_model_set_drops(trb_model *m, const double *rows, int n_rows, int
     if (!(rows[i] >= -TRB_MOST_DROP && rows[i] <= TRB_MOST_DROP))
       return trb_fail(message, TRB_ERR_INPUT, "drops, row %d: %g m: must be from %g to %g m", i / n_columns, rows[i], -TRB_MOST_DROP,
                       TRB_MOST_DROP);
+  fill_ends(m, rows);
   return fill_nodes(m, rows, message);
 }
 

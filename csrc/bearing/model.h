@@ -111,7 +111,7 @@ typedef struct trb_model {
   double          *cell;               /* ends of the nodes' cells, as long as their weights: n_nodes + 1 stations, m */
   double          *centre;             /* per roller and lane: sphere's centre from the centre of mass, along the axis, m */
   double          *sphere;             /* per roller and lane: sphere's radius, m */
-  trb_sphere      *end_spheres;        /* per roller: of a flank without profile at both ends of the effective length */
+  trb_sphere      *end_spheres;        /* per roller: of a flank around all profiles at both ends of the effective length */
   trb_race_nodes   race[TRB_N_RACES];
   trb_pocket_face *faces;      /* all faces, grouped by pocket */
   int             *first_face; /* per pocket, n_rollers + 1 entries: its faces are [first, next first) */

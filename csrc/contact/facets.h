@@ -36,9 +36,9 @@ static inline void trb_add_near(trb_near_facets *list, trb_facets *near, int num
   near->n++;
 }
 
-/* Lower bound of the gap between the flank and a face, less that in which a film acts. A bounded face is no nearer than its plane. For a cone without profile the height
- * over the plane less the sphere's radius is linear along the axis, so its least value is at one of the ends; a profile only takes
- * material away. Where this bound is not positive, the least value over the nodes is taken. */
+/* Lower bound of the gap between the flank and a face, less that in which a film acts. A bounded face is no nearer than its plane. For a cone without
+ * profile the height over the plane less the sphere's radius is linear along the axis, so its least value is at one of the ends; the cone of the
+ * end spheres is around the profile. Where this bound is not positive, the least value over the nodes is taken. */
 static inline double trb_flank_gap(const trb_model *m, const trb_pocket_face *f, const trb_pocket_view *p, int roller)
 {
   const double *centre = m->centre + (size_t)roller * (size_t)m->n_lanes, *sphere = m->sphere + (size_t)roller * (size_t)m->n_lanes;
