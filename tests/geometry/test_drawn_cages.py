@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,6 +23,11 @@ except ImportError as error:
 @pytest.fixture(scope="module")
 def lands(drawings: ModuleType, rig: trb.Bearing, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return drawings.write("lands", rig, tmp_path_factory.mktemp("lands") / "lands.step")
+
+
+@pytest.fixture(scope="module")
+def read(rig: trb.Bearing, lands: Path) -> Any:
+    return read_cage(lands, rig)
 
 
 def same_faces(found: trb.Pocket, pocket: trb.Pocket) -> None:
@@ -53,8 +59,8 @@ def loads(bearing: trb.Bearing) -> np.ndarray:
     return np.array(found)
 
 
-def test_the_shipped_cage_through_step(rig: trb.Bearing, lands: Path) -> None:
-    found = read_cage(lands, rig)
+def test_the_shipped_cage_through_step(rig: trb.Bearing, read: Any) -> None:
+    found = read
     assert found.n_pockets == 12
     assert found.kind_of == (0,) * 12
     same_faces(found.pockets[0], rig.pocket)
@@ -75,11 +81,11 @@ def test_walls_beyond_a_large_play_are_found(drawings: ModuleType, rig: trb.Bear
     assert found.plays["axial"] == pytest.approx(0.8e-3, abs=1e-10)
 
 
-def test_turned_shifted_and_in_inches(drawings: ModuleType, rig: trb.Bearing, lands: Path, tmp_path: Path) -> None:
+def test_turned_shifted_and_in_inches(drawings: ModuleType, rig: trb.Bearing, read: Any, tmp_path: Path) -> None:
     path = drawings.write(
         "lands", rig, tmp_path / "moved.step", shift=(12.0, -30.0, 7.0), turn=(0.7, -2.1, 0.3), inches=True
     )
-    before, after = read_cage(lands, rig), read_cage(path, rig)
+    before, after = read, read_cage(path, rig)
     same_faces(after.pockets[0], rig.pocket)
     assert after.volume == pytest.approx(before.volume, rel=1e-6)
     assert after.offset == pytest.approx(before.offset, abs=1e-9)
