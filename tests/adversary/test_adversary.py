@@ -95,14 +95,18 @@ def test_what_steps_take_after_a_drop_of_load_is_measured_from_the_drop_on():
     assert 10.0 < float(loss[1]) < 30.0
 
 
-@pytest.mark.parametrize(
-    ("kind", "seed"), [("pieces", 99000021), pytest.param("elastic", 100000036, marks=pytest.mark.slow)]
-)
-def test_an_interval_that_leaves_much_open_is_no_proof(kind, seed):
-    """Pieces that are repeated show no difference by chance, within a tenth or more; the loss is some per cent too low."""
+@pytest.mark.parametrize("unclear", [True, False])
+def test_an_interval_that_leaves_much_open_is_no_proof(unclear, monkeypatch):
+    """The pieces that are repeated show next to no difference by chance, within 24 and 13 %; the loss is a tenth too low. So also
+    by the rule of vibrations that neither grow nor are most of the loads.
+    """
     import trbdyn as trb
+    from trbdyn.run import vibrations
 
-    table = ORDINARY | draw(kind, seed)
+    if not unclear:
+        monkeypatch.setattr(vibrations, "MOST", np.inf)
+        monkeypatch.setattr(vibrations, "GROWING", np.inf)
+    table = ORDINARY | draw("pieces", 99000021)
     scene = make(table)
     sim = trb.Simulation(scene, accuracy=table["accuracy"])
     run = bounded_run(sim, scene_duration(scene), MOST_STEPS, pieces=table["pieces"])
