@@ -2,6 +2,7 @@
 rollers vibrate.
 
 python tests/adversary/beside.py guided 2100078              a scene of `adversary.py`, by its kind and seed
+python tests/adversary/beside.py drop 99000025 --duration 15e-3 --like 40      by how much scenes like it are off in the mean
 """
 
 from __future__ import annotations
@@ -12,9 +13,10 @@ import warnings
 from typing import Any
 
 import numpy as np
-from judge import TIGHT, bounded_run
+from chance import mean_difference
+from judge import TIGHT, bounded_run, losses
 from numpy.typing import NDArray
-from random_scenes import KINDS, draw, make
+from random_scenes import KINDS, ORDINARY, draw, make
 
 import trbdyn as trb
 
@@ -60,7 +62,14 @@ def main() -> int:
     parser.add_argument(
         "--vibrations", type=float, metavar="TIME", help="vibrations of the rollers up to this time (s), too"
     )
+    parser.add_argument(
+        "--like", type=int, metavar="COUNT", help="the loss of scenes like it beside tight runs, and no more"
+    )
     args = parser.parse_args()
+    if args.like is not None:
+        off, error = mean_difference(ORDINARY | draw(args.kind, args.seed), losses(args.duration), args.like)
+        print(f"{args.like} scenes like it: {100.0 * off:.2g} +/- {100.0 * error:.2g} % in the mean")
+        return 0
     scene = make(draw(args.kind, args.seed) | ({} if args.damping is None else {"damping": args.damping}))
     print(f"{'':24} {'steps':>8} {'lost (J)':>10} {'energy':>9}  warnings")
     for name, options in WAYS.items():

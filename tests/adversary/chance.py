@@ -19,8 +19,8 @@ Table = dict[str, Any]
 
 LIKE = 32
 """Scenes like the judged one."""
-FEWEST = 24
-"""Those of them that must have been compared."""
+FEWEST = 0.75
+"""Share of them that must have been compared."""
 
 
 def like(table: Table, number: int) -> Table:
@@ -42,7 +42,9 @@ def like(table: Table, number: int) -> Table:
     return found
 
 
-def mean_difference(table: Table, losses: Callable[[Table], tuple[float, float]]) -> tuple[float, float]:
+def mean_difference(
+    table: Table, losses: Callable[[Table], tuple[float, float]], count: int = LIKE
+) -> tuple[float, float]:
     """By how much losses of scenes like this are off in the mean, and twice its standard error; infinite if too few can be run.
 
     Parameters
@@ -52,20 +54,23 @@ def mean_difference(table: Table, losses: Callable[[Table], tuple[float, float]]
     losses : callable
         Losses of a scene by the tolerances that are judged, and by tight ones (J); nan where a run did not come to its end.
 
+    count : int
+        How many scenes; three quarters of them must have been compared.
+
     Returns
     -------
     tuple of float
         Over the loss by tight tolerances.
     """
     off = []
-    for number in range(LIKE):
+    for number in range(count):
         try:
             own, tight = losses(like(table, number))
         except trb.TrbError:
             continue
         if math.isfinite(own) and math.isfinite(tight) and tight > 0.0:
             off.append(own / tight - 1.0)
-    if len(off) < FEWEST:
+    if len(off) < FEWEST * count:
         return math.inf, math.inf
     return float(np.mean(off)), 2.0 * float(np.std(off, ddof=1)) / math.sqrt(len(off))
 

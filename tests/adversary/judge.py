@@ -13,6 +13,7 @@ from __future__ import annotations
 import math
 import time as clock
 import warnings
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -210,6 +211,20 @@ def _judge_scene(table: Table) -> Verdict:
     return verdict
 
 
+def losses(duration: float) -> Callable[[Table], tuple[float, float]]:
+    """A function that gives losses of a scene by its own tolerances and by tight ones (J); nan where a run did not end."""
+
+    def both(table: Table) -> tuple[float, float]:
+        ways = {"accuracy": table["accuracy"]}, TIGHT
+        found = [
+            bounded_run(trb.Simulation(make(table), **way), duration, MOST_TIGHT_STEPS, watched=False) for way in ways
+        ]
+        own, tight = (run.asked[0] if run.status == "done" else math.nan for run in found)
+        return own, tight
+
+    return both
+
+
 def by_chance(off: float, error: float) -> bool:
     """Whether scenes like one are right in the mean, and this is known well enough."""
     return abs(off) <= error and abs(off) + error <= LOSS
@@ -218,20 +233,12 @@ def by_chance(off: float, error: float) -> bool:
 def _look_for_chance(table: Table, duration: float, verdict: Verdict) -> None:
     """It is chance where the summary's interval is as wide, and scenes like this show no bias of the tolerances."""
     ways = {"accuracy": table["accuracy"]}, TIGHT
-
-    def losses(one: Table) -> tuple[float, float]:
-        found = [
-            bounded_run(trb.Simulation(make(one), **way), duration, MOST_TIGHT_STEPS, watched=False) for way in ways
-        ]
-        own, tight = (run.asked[0] if run.status == "done" else math.nan for run in found)
-        return own, tight
-
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         own, tight = (trb.Simulation(make(table), **way).run(duration=duration) for way in ways)
         if not chance.within_its_interval(own, tight):
             return
-        off, error = chance.mean_difference(table, losses)
+        off, error = chance.mean_difference(table, losses(duration))
     verdict.broken.append(f"scenes like it: {100.0 * off:.2g} +/- {100.0 * error:.2g} % in the mean")
     if by_chance(off, error):
         verdict.status = "chance"
