@@ -46,7 +46,6 @@ class _Reader:
     def __init__(self, drawing: Drawing, bearing: Bearing, tolerance: float, roller_plane: float | None) -> None:
         self.drawing, self.bearing, self.tolerance, self.roller_plane = drawing, bearing, tolerance, roller_plane
         self.count = bearing.n_rollers
-        self._reach_for(REACHES[0])
 
     def _reach_for(self, share: float) -> None:
         reach = share * self.bearing.roller.diameter
