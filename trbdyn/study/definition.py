@@ -42,28 +42,14 @@ _CHOOSERS: Final = {"bearing": "case", "lubricant": "oil", "effects": "preset"}
 
 @dataclass(frozen=True)
 class Base:
-    """What overrides change: the tables of a case.
-
-    Attributes
-    ----------
-    tables : dict
-        Tables as in a TOML case, `trbdyn.run.toml_case`.
-    whole : bool
-        Whether every value is given, as for a base made of a scene.
-    """
+    """What overrides change: the tables of a case, as in a TOML case (`trbdyn.run.toml_case`)."""
 
     tables: Table
-    whole: bool = False
+    whole: bool = False  # whether every value is given, as for a base made of a scene
 
     @classmethod
     def of(cls, base: Subject | Mapping[str, Any] | str | FilePath | Base, run: RunOptions | None = None) -> Base:
-        """A base from a scene or an assembly, the tables of a case, or the name of a TOML case.
-
-        Raises
-        ------
-        FileError
-            If the case cannot be read.
-        """
+        """A base from a scene or an assembly, the tables of a case, or the name of a TOML case."""
         if isinstance(base, Base):
             made = base
         elif isinstance(base, Subject):
@@ -83,13 +69,7 @@ class Base:
         return {f"bearings[{index}].": table for index, table in enumerate(bearings) if isinstance(table, dict)}
 
     def build(self, overrides: Overrides) -> tuple[Subject, RunOptions]:
-        """Scene or assembly, and run options, with overrides put in.
-
-        Raises
-        ------
-        InputError
-            If a path does not exist or a value is not allowed.
-        """
+        """Scene or assembly, and run options, with overrides put in; an error where a path or a value is wrong."""
         made = Base(copy.deepcopy(self.tables), self.whole)
         tables = made.tables
         for prefix, part in made.parts.items():
@@ -117,15 +97,7 @@ def _check_oil(prefix: str, part: Table, overrides: Overrides) -> None:
 
 
 def read_toml(path: str | FilePath) -> Table:
-    """The tables of a TOML file, or of a case that ships with the package.
-
-    Raises
-    ------
-    FileError
-        If it cannot be read.
-    InputError
-        If it is no name.
-    """
+    """The tables of a TOML file, or of a case that ships with the package."""
     try:
         file = SUBJECTS.file(path)
     except InputError:
@@ -135,13 +107,7 @@ def read_toml(path: str | FilePath) -> Table:
 
 
 def split_path(path: str) -> Path:
-    """The parts of a dotted path: ``scene.gravity[1]`` gives ``('scene', 'gravity', 1)``.
-
-    Raises
-    ------
-    InputError
-        If it is no path to a value of a case.
-    """
+    """The parts of a dotted path to a value of a case: ``scene.gravity[1]`` gives ``('scene', 'gravity', 1)``."""
     parts: list[str | int] = []
     if not isinstance(path, str):
         raise InputError.of("override", path, "must be a dotted path, for instance 'scene.speed_rpm'")
@@ -157,12 +123,8 @@ def split_path(path: str) -> Path:
 
 
 def put(tables: Table, path: str, value: Any) -> None:
-    """Put a value into nested tables; tables that are missing on the way are made.
-
-    Raises
-    ------
-    InputError
-        If the path leads through a value that is no table, or to a place that a list does not have.
+    """Put a value into nested tables; tables that are missing on the way are made. A path that leads through a value that is no
+    table, or to a place that a list does not have, is an error.
     """
     parts = split_path(path)
     place: Any = tables

@@ -30,25 +30,12 @@ MASS, AXIAL, TRANSVERSE = "bearing.cage.mass", "bearing.cage.inertia_axial", "be
 def belongs_together(
     bearing: Bearing, drawn: Mapping[str, Any], bands: Mapping[str, tuple[float, float, float]], prefix: str = ""
 ) -> dict[str, Any]:
-    """Inputs of a draw, with those that follow from others put right. What is known of the bearing, and is no estimate, stays.
+    """Inputs of a draw, with those that follow from others put right, and estimates that were not drawn and follow from them.
+    What is known of the bearing, and is no estimate, stays.
 
-    Parameters
-    ----------
-    bearing : Bearing
-        The bearing with its estimates.
-    drawn : mapping of str to number
-        Inputs of the draw, each drawn by itself.
-    bands : mapping of str to tuple
-        Both ends of the band of each input, and how far between them it was drawn (0 to 1). A band that is not the one of
-        the estimate is somebody's knowledge, and what was drawn from it stays.
-
-    prefix : str
-        With what the paths of this bearing begin; others are left out.
-
-    Returns
-    -------
-    dict
-        The inputs of the draw, and estimates that were not drawn and follow from them.
+    `bands` holds both ends of the band of each input, and how far between them it was drawn (0 to 1). A band that is not the
+    one of the estimate is somebody's knowledge, and what was drawn from it stays. Paths that do not begin with `prefix` are
+    left out.
     """
     drawn, bands = _own(prefix, drawn), _own(prefix, bands)
     found, cage = dict(drawn), bearing.cage

@@ -44,17 +44,7 @@ LAST_SECONDS = 5.0
 
 @dataclass(frozen=True)
 class Outcome(Generic[T]):
-    """How a task ended.
-
-    Attributes
-    ----------
-    task : object
-        The task.
-    value : object
-        What the work gave.
-    error : Exception or None
-        What it raised instead.
-    """
+    """How a task ended: what the work gave, or what it raised instead."""
 
     task: T
     value: Any = None
@@ -67,32 +57,11 @@ def cores() -> int:
 
 
 def execute(work: Work[T], tasks: Iterable[T], executor: Any = "processes", workers: int | None = None) -> Outcomes[T]:
-    """Do the work of every task; outcomes come as tasks end, in any order.
+    """Do the work of every task; outcomes come as tasks end, in any order. Closing the generator stops the work.
 
-    Parameters
-    ----------
-    work : callable
-        Called as ``work(task, stopped)``; for processes and clusters it and the tasks must pickle. What it raises is the
-        outcome's error. It should end soon once ``stopped()`` is true.
-    tasks : iterable
-        The tasks.
-    executor : {'processes', 'threads', 'serial'} or object
-        Own worker processes (spawned), threads, this thread alone; or an executor with ``submit`` as in
-        `concurrent.futures`; or a Dask client.
-    workers : int, optional
-        Number of own workers; by default, and at most, the cores.
-
-    Yields
-    ------
-    Outcome
-        Closing the generator stops the work.
-
-    Raises
-    ------
-    InputError
-        If the executor or the number of workers cannot be used.
-    TrbError
-        If worker processes cannot be started.
+    `work` is called as ``work(task, stopped)``, and should end soon once ``stopped()`` is true; for processes and clusters it
+    and the tasks must pickle. Executors are those of `trbdyn.study.run`. Worker processes that cannot be started are a
+    `TrbError`.
     """
     if workers is not None and workers < 1:
         raise InputError.of("workers", workers, "must be at least 1")

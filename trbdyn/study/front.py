@@ -15,13 +15,7 @@ if TYPE_CHECKING:
 
 
 def draw_front(found: Optimum) -> Any:
-    """Draw the designs over the first two aims; of one aim over the order in which they were run.
-
-    Parameters
-    ----------
-    found : Optimum
-        What `trbdyn.optimise` found.
-    """
+    """Draw the designs over the first two aims; of one aim over the order in which they were run."""
     aims = list(found.want)[:2]
 
     def places(designs: tuple[Design, ...]) -> Any:

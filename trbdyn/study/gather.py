@@ -31,21 +31,11 @@ _UNKNOWN = "0" * 64
 
 
 def dataset(study: Study, entries: Sequence[Entry | None]) -> xarray.Dataset:
-    """Gather the observables of all cases.
+    """Gather the observables of all cases; an entry is None where its case was not run.
 
-    Parameters
-    ----------
-    study : Study
-        The study.
-    entries : sequence of Entry or None
-        How each of its cases ended; None if it was not run.
-
-    Returns
-    -------
-    xarray.Dataset
-        Dimensions: the axes of a grid, or ``case``. Variables: ``status``, ``message``, ``file``, ``fingerprint``, ``wall_time``
-        and every observable; nan (or empty text) where a case has none. An observable whose name a parameter has already gets
-        ``_observed`` behind it.
+    Dimensions: the axes of a grid, or ``case``. Variables: ``status``, ``message``, ``file``, ``fingerprint``, ``wall_time``
+    and every observable; nan (or empty text) where a case has none. An observable whose name a parameter has already gets
+    ``_observed`` behind it.
     """
     import xarray
 

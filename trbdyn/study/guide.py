@@ -30,18 +30,10 @@ NEAREST: Final = 1e-3
 
 @dataclass(frozen=True)
 class Aims:
-    """What is wanted of the results of a design, shape (designs, aims + limits).
+    """What is wanted of the results of a design, shape (designs, aims + limits)."""
 
-    Attributes
-    ----------
-    aims : int
-        So many of the columns are to be small; the others are to be at most 0.
-    cells : tuple of int
-        For each input how many values it has, 0 for any.
-    """
-
-    aims: int
-    cells: tuple[int, ...]
+    aims: int  # so many of the columns are to be small; the others are to be at most 0
+    cells: tuple[int, ...]  # for each input how many values it has, 0 for any
 
     def snapped(self, unit: Array) -> Array:
         """Points of the unit cube, whole numbers in the middle of their cells."""
@@ -114,18 +106,8 @@ def weights_of(aims: int, count: int, seed: int) -> Array:
 def next_designs(unit: Array, values: Array, aims: Aims, count: int, seed: int) -> Array:
     """Points of the unit cube whose designs shall be run next, shape (count, inputs).
 
-    Parameters
-    ----------
-    unit : ndarray, shape (n, inputs)
-        Designs that were run.
-    values : ndarray, shape (n, aims + limits)
-        Their results; a limit is kept where its column is at most 0. Rows that are not finite could not be run.
-    aims : Aims
-        What is wanted.
-    count : int
-        How many.
-    seed : int
-        Of the weights and of the search.
+    From designs that were run, `unit` of shape (n, inputs), and their results, `values` of shape (n, aims + limits); rows that
+    are not finite could not be run.
     """
     ran = np.isfinite(values).all(axis=1)
     fits = Fits(unit[ran], values[ran], seed)

@@ -98,13 +98,7 @@ def film_temperature(nodes: Mapping[str, float]) -> float:
 
 
 class LossCurves:
-    """Losses by mechanism over the temperature of films, between those that were run by monotone cubics.
-
-    Parameters
-    ----------
-    known : mapping of float to mapping
-        Power by mechanism (W), by temperature (C).
-    """
+    """Losses by mechanism (W) over the temperature of films (C), between those that were run by monotone cubics."""
 
     def __init__(self, known: Mapping[float, Mapping[str, float]]) -> None:
         self.temperatures = np.array(sorted(known))

@@ -27,57 +27,22 @@ INDEX = "index.jsonl"
 
 @dataclass(frozen=True)
 class Entry:
-    """How one case ended: a line of the index.
-
-    Attributes
-    ----------
-    name : str
-        Name of the case.
-    fingerprint : str
-        What it was: scene and run options.
-    status : {'done', 'failed'}
-        Whether it reached its end.
-    message : str
-        How it ended, in a sentence.
-    parameters : dict
-        What told it from the others.
-    file : str
-        Its result file, in the folder; empty if there is none.
-    values : dict
-        Observables.
-    wall_s : float
-        Wall time (s).
-    finished : str
-        When, UTC.
-    version : str
-        Version of trbdyn.
-    """
+    """How one case ended: a line of the index."""
 
     name: str
-    fingerprint: str
+    fingerprint: str  # of scene and run options
     status: Literal["done", "failed"]
-    message: str
-    parameters: dict[str, Any] = field(default_factory=dict)
-    file: str = ""
-    values: dict[str, Any] = field(default_factory=dict)
-    wall_s: float = 0.0
-    finished: str = ""
-    version: str = ""
+    message: str  # how it ended, in a sentence
+    parameters: dict[str, Any] = field(default_factory=dict)  # what told it from the other cases
+    file: str = ""  # its result file in the folder; empty if there is none
+    values: dict[str, Any] = field(default_factory=dict)  # observables
+    wall_s: float = 0.0  # wall time (s)
+    finished: str = ""  # when, UTC
+    version: str = ""  # of trbdyn
 
 
 class Index:
-    """The index of a folder.
-
-    Parameters
-    ----------
-    folder : Path or None
-        The folder, made if it is missing; None keeps the entries in memory only.
-
-    Raises
-    ------
-    FileError
-        If the folder cannot be made or the index not be read.
-    """
+    """The index of a folder, which is made if it is missing; without a folder the entries are in memory only."""
 
     def __init__(self, folder: Path | None) -> None:
         self.folder = folder
@@ -92,13 +57,7 @@ class Index:
             raise FileError(f"{folder}: the folder cannot be used: {error.strerror or error}") from error
 
     def add(self, entry: Entry) -> None:
-        """Add an entry, on disk too.
-
-        Raises
-        ------
-        FileError
-            If it cannot be written.
-        """
+        """Add an entry, on disk too."""
         self.entries[entry.fingerprint] = entry
         if self.folder is None:
             return
@@ -131,12 +90,8 @@ def _last_byte(path: Path) -> bytes:
 
 
 def read_lines(path: Path) -> Iterator[Entry]:
-    """Entries of an index file, in the order in which they were written; damaged lines are passed over.
-
-    Warns
-    -----
-    UserWarning
-        If a line is damaged: its case counts as not run.
+    """Entries of an index file, in the order in which they were written. Damaged lines are passed over with a warning: their
+    cases count as not run.
     """
     if not path.is_file():
         return

@@ -223,12 +223,8 @@ def _half(result: Result) -> dict[str, Array]:
 
 
 def numbers_of(result: Result) -> dict[str, float]:
-    """Slips and power per area of the last half of a run of one bearing; see `LeastLoad`.
-
-    Parameters
-    ----------
-    result : Result
-        With the groups cage, rollers and contacts.
+    """Slips and power per area of the last half of a run of one bearing, with the groups cage, rollers and contacts; see
+    `LeastLoad`.
     """
     half = _half(result)
     heaviest = half["load"].max(axis=1, keepdims=True)
@@ -256,16 +252,8 @@ def numbers_of(result: Result) -> dict[str, float]:
 
 
 def entering(loads: Array, angles: Array, orbit_speed: float) -> Array:
-    """Which rollers are in the half of the load zone that they enter by; all of them where it has no beginning.
-
-    Parameters
-    ----------
-    loads : ndarray, shape (Z,)
-        Of the rollers at the inner ring (N).
-    angles : ndarray, shape (Z,)
-        Where they are (rad).
-    orbit_speed : float
-        Speed at which they go round (rad/s).
+    """Which rollers are in the half of the load zone that they enter by; all of them where it has no beginning. From loads at
+    the inner ring (N) and angles (rad) of the rollers, shape (Z,), and the speed at which they go round (rad/s).
     """
     zone = loads > LOADED * loads.max()
     if zone.all() or not zone.any():
@@ -304,17 +292,9 @@ def _rule(bearing: Bearing) -> float:
 
 
 def least_of(sizes: Array, slips: Array, limit: float) -> float:
-    """The load from which on slips stay within a limit (N), between loads along the logarithm of the load; infinite where the
-    largest load still slips, the smallest load where none does, not a number where a slip is not known.
-
-    Parameters
-    ----------
-    sizes : ndarray, shape (n,)
-        Loads (N).
-    slips : ndarray, shape (n,)
-        Slip at each of them (1).
-    limit : float
-        Slip that is allowed (1).
+    """The load from which on slips (1) at some loads (N), both of shape (n,), stay within a limit (1), between loads along the
+    logarithm of the load (N); infinite where the largest load still slips, the smallest load where none does, not a number
+    where a slip is not known.
     """
     order = np.argsort(sizes)
     load, slip = sizes[order], slips[order]

@@ -395,12 +395,8 @@ class _Balance:
         return {name: Temperatures.of_nodes(one) for name, one in zip(self.warm.subject.names, nodes, strict=True)}
 
     def lost(self, power: Array, outside: float, *, look: bool = False) -> Array:
-        """Losses of each bearing (W) at the temperatures that losses make.
-
-        Raises
-        ------
-        TrbError
-            If nothing holds the shaft there, or parts are hotter than is looked for.
+        """Losses of each bearing (W) at the temperatures that losses make; an error where nothing holds the shaft there, or
+        parts are hotter than is looked for.
         """
         nodes = self.nodes(power, outside)
         if max(max(one.values()) for one in nodes) > HOTTEST:

@@ -38,28 +38,11 @@ def run_until_settled(
     observables: Mapping[str, Observable],
     how: Running,
 ) -> dict[Point, dict[str, Any]]:
-    """Run points, each again with the next number of turns until it has settled or cannot be run.
+    """Run points, each again with the next number of turns (ascending) until it has settled or cannot be run.
 
-    Parameters
-    ----------
-    points : sequence
-        What is run.
-    turns : sequence of float
-        Lengths of the runs, ascending.
-    case : callable
-        The case of a point with a number of turns.
-    judged : callable
-        What is kept of a case's entry in the dataset and its number of turns: ``settled``, ``message`` (why it could not be
-        run, else empty), and what else is wanted.
-    observables : mapping of str to callable
-        What is computed of each result.
-    how : Running
-        Where and how the runs are made; in threads by default.
-
-    Returns
-    -------
-    dict
-        What was kept of each point's longest run.
+    `case` makes the case of a point with a number of turns; `judged` gives what is kept of the case's entry in the dataset and
+    its number of turns: ``settled``, ``message`` (why it could not be run, else empty), and what else is wanted. Runs go side
+    by side in threads unless `how` says otherwise. What was kept of each point's longest run is returned.
     """
     rows: dict[Point, dict[str, Any]] = {}
     waiting = list(points)

@@ -318,17 +318,9 @@ def own_paths(subject: Subject, paths: HeatPaths | Mapping[str, HeatPaths]) -> l
 
 @dataclass
 class _Balance:
-    """Losses of bearings at temperatures of their films, and the temperatures at which they balance.
-
-    Attributes
-    ----------
-    subject, paths, options, how
-        What is run, the network of each bearing, and how it is run.
-    known, rough : dict
-        Losses of each bearing by the films' temperatures: settled ones, and those that are good enough to tell on which side of
-        the balance they lie.
-    nodes : list of dict
-        Temperatures of the nodes of each bearing that follow from the losses that were computed last (C).
+    """Losses of bearings at temperatures of their films, and the temperatures at which they balance. `known` holds settled
+    losses of each bearing by the films' temperatures, `rough` those that are good enough to tell on which side of the balance
+    they lie.
     """
 
     subject: Subject
@@ -337,7 +329,7 @@ class _Balance:
     how: Running
     known: dict[Films, list[Losses]] = field(default_factory=dict)
     rough: dict[Films, list[Losses]] = field(default_factory=dict)
-    nodes: list[dict[str, float]] = field(default_factory=list)
+    nodes: list[dict[str, float]] = field(default_factory=list)  # of each bearing (C), from the last losses
 
     def found(self) -> Films:
         """Temperatures of the films at which each network gives off what its bearing makes. Each is bracketed, all at the same

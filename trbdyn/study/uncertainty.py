@@ -426,25 +426,13 @@ def band_of(values: ArrayLike) -> tuple[float, float, float]:
 
 
 def first_order(unit: Array, values: Array) -> tuple[Array, float]:
-    """First-order indices of independent inputs, from given draws.
+    """First-order indices of independent inputs, from given draws: shares of the variance of each input, empty where the draws
+    are too few even for straight lines, and one less their sum, not below 0.
 
-    The values are fitted by a sum of one parabola for each input, in Legendre polynomials, which are orthogonal over the
-    unit interval: the variance that an input makes by itself is the sum of its two squared coefficients (Sudret 2008, Reliab.
-    Eng. Syst. Saf. 93, 964, to second degree and without products). What chance adds to a squared coefficient is taken off.
-
-    Parameters
-    ----------
-    unit : ndarray, shape (n, inputs)
-        Draws, each input uniform over 0 to 1.
-    values : ndarray, shape (n,)
-        The observable.
-
-    Returns
-    -------
-    shares : ndarray, shape (inputs,)
-        Empty where the draws are too few even for straight lines.
-    rest : float
-        One less their sum, not below 0.
+    The values, shape (n,), over draws that are uniform over 0 to 1, shape (n, inputs), are fitted by a sum of one parabola for
+    each input, in Legendre polynomials, which are orthogonal over the unit interval: the variance that an input makes by itself
+    is the sum of its two squared coefficients (Sudret 2008, Reliab. Eng. Syst. Saf. 93, 964, to second degree and without
+    products). What chance adds to a squared coefficient is taken off.
     """
     n, inputs = unit.shape
     variance = float(values.var(ddof=1))

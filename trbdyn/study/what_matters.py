@@ -217,14 +217,10 @@ Pair = tuple[Array | None, Array | None]
 
 
 def told_from(base: Array, ends: Sequence[Pair]) -> list[tuple[float | None, float | None]]:
-    """Difference of the mean over the starts from which an end of a band is told apart from the estimate.
+    """Difference of the mean over the starts from which each end of a band is told apart from the estimate.
 
-    Parameters
-    ----------
-    base : ndarray, shape (R, S)
-        The result with the estimates, in R repeated runs from each of S starts.
-    ends : sequence of pairs of ndarray, shape (S,), or None
-        The result at both ends of each band, from the same starts; None where there is none.
+    `base` has the result with the estimates in R repeated runs from each of S starts, shape (R, S); `ends` the result at both
+    ends of each band from the same starts, shape (S,), or None where there is none.
     """
     from scipy import stats
 
@@ -284,13 +280,7 @@ def _cases(
 
 
 def _base(data: xarray.Dataset, key: str, name: str) -> Array:
-    """The result of the runs with the estimates.
-
-    Raises
-    ------
-    InputError
-        If one failed, or a result is no number.
-    """
+    """The result of the runs with the estimates; an error where one failed, or a result is no number."""
     for status, message in zip(data["status"].values, data["message"].values, strict=True):
         if status != "done":
             raise InputError.of("scene", "as it is", f"cannot be run: {message}")

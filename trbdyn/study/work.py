@@ -28,50 +28,26 @@ NOT_OBSERVABLE: Final = ("success", "message")
 
 @dataclass(frozen=True)
 class Task:
-    """What a worker is to do.
-
-    Attributes
-    ----------
-    fingerprint : str
-        Of the case.
-    scene, run : dict
-        Scene and run options, as plain data.
-    path : str
-        Result file; empty to keep records in memory.
-    observables : mapping of str to callable
-        Functions of the result whose values are wanted besides the summary.
+    """What a worker is to do: scene and run options as plain data, and functions of the result that are wanted besides the
+    summary.
     """
 
-    fingerprint: str
+    fingerprint: str  # of the case
     scene: dict[str, Any]
     run: dict[str, Any]
-    path: str = ""
+    path: str = ""  # result file; empty to keep records in memory
     observables: Mapping[str, Observable] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class Report:
-    """How a task ended.
-
-    Attributes
-    ----------
-    status : {'done', 'failed'}
-        Whether the run reached its end.
-    message : str
-        How it ended.
-    file : str
-        Name of the result file; empty if there is none.
-    values : dict
-        Observables, as plain data.
-    wall_s : float
-        Wall time (s).
-    """
+    """How a task ended."""
 
     status: Literal["done", "failed"]
-    message: str
-    file: str = ""
-    values: dict[str, Any] = field(default_factory=dict)
-    wall_s: float = 0.0
+    message: str  # how it ended, in a sentence
+    file: str = ""  # name of the result file; empty if there is none
+    values: dict[str, Any] = field(default_factory=dict)  # observables, as plain data
+    wall_s: float = 0.0  # wall time (s)
 
 
 def simulation(scene: Subject, run: RunOptions) -> Simulation[Any]:
@@ -80,15 +56,8 @@ def simulation(scene: Subject, run: RunOptions) -> Simulation[Any]:
 
 
 def run_case(task: Task, stopped: Callable[[], bool]) -> Report:
-    """Run one case.
-
-    A file appears under its name when it is complete. Records of a run that failed on the way are kept under a name of
-    its own.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If it was stopped before its end; nothing is kept then.
+    """Run one case. A file appears under its name when it is complete; records of a run that failed on the way are kept under a
+    name of its own. Nothing is kept of a run that was stopped before its end, which raises KeyboardInterrupt.
     """
     began = clock.perf_counter()
     path = Path(task.path) if task.path else None

@@ -47,13 +47,7 @@ def groups_of(name: str) -> tuple[str, ...]:
 
 
 def check_names(subject: Subject, names: Iterable[str]) -> None:
-    """Refuse names that are no averages of the subject.
-
-    Raises
-    ------
-    InputError
-        If there is one.
-    """
+    """Refuse names that are no averages of the subject."""
     bearings = prefixes(subject)
     for name in names:
         bearing, own = of_bearing(name)
@@ -75,13 +69,7 @@ def joined(each: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Records:
-    """The records of a run.
-
-    Attributes
-    ----------
-    parts : mapping of str to Result
-        Of each bearing, by what the names of its averages begin with.
-    """
+    """The records of a run of each bearing, by what the names of its averages begin with."""
 
     parts: Mapping[str, Result]
 

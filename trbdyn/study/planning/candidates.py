@@ -26,24 +26,12 @@ TRUE_ACCURACY: Final = "reference"
 
 @dataclass(frozen=True)
 class Switch:
-    """An effect that may be left out.
-
-    Attributes
-    ----------
-    name : str
-        Short name.
-    without : mapping
-        Fields of `Effects` of a model without it.
-    needs_films : bool
-        Whether it acts only where contacts have films.
-    needs_cage : bool
-        Whether it acts only where there is a cage.
-    """
+    """An effect that may be left out."""
 
     name: str
-    without: Mapping[str, Any]
-    needs_films: bool = False
-    needs_cage: bool = False
+    without: Mapping[str, Any]  # fields of `Effects` of a model without it
+    needs_films: bool = False  # acts only where contacts have films
+    needs_cage: bool = False  # acts only where there is a cage
 
 
 SWITCHES: Final = (
@@ -74,24 +62,14 @@ SWITCHES: Final = (
 
 @dataclass(frozen=True)
 class Candidate:
-    """One thing that a plan may choose.
-
-    Attributes
-    ----------
-    name : str
-        As the table names it.
-    kind : {'effect', 'nodes', 'tolerances', 'as given'}
-        An effect that may be left out; fewer nodes; looser tolerances; nodes and tolerances as the scene has them.
-    effects : mapping
-        Fields of `Effects` that it changes.
-    accuracy : str
-        Preset of the tolerances.
+    """One thing that a plan may choose: an effect that may be left out; fewer nodes; looser tolerances; nodes and tolerances as
+    the scene has them.
     """
 
-    name: str
+    name: str  # as the table names it
     kind: Kind
-    effects: Mapping[str, Any] = field(default_factory=dict)
-    accuracy: str = USUAL_ACCURACY
+    effects: Mapping[str, Any] = field(default_factory=dict)  # fields of `Effects` that it changes
+    accuracy: str = USUAL_ACCURACY  # preset of the tolerances
 
 
 def numerics(nodes: int) -> dict[str, Any]:
@@ -100,14 +78,8 @@ def numerics(nodes: int) -> dict[str, Any]:
 
 
 def candidates(scene: Subject, *, wants_cage: bool) -> list[Candidate]:
-    """All candidates of a scene or an assembly, whose bearings are simplified together.
-
-    Parameters
-    ----------
-    scene : Scene or Assembly
-        What is simulated.
-    wants_cage : bool
-        Whether a wanted average is one of the cage, so that it cannot be left out.
+    """All candidates of a scene, or of an assembly, whose bearings are simplified together. Where a wanted average is one of
+    the cage, this cannot be left out.
     """
     parts: list[Any] = list(scene.parts.values())
     chosen = [

@@ -24,106 +24,46 @@ against the others."""
 
 @dataclass(frozen=True)
 class Option:
-    """A simplification, or a choice of nodes and tolerances.
-
-    Attributes
-    ----------
-    name : str
-        Its name.
-    bounds : ndarray, shape (W,)
-        Bound of the relative error of each wanted average.
-    time_ratio : float
-        Computing time with it over that without it.
-    """
+    """A simplification, or a choice of nodes and tolerances."""
 
     name: str
-    bounds: Array
-    time_ratio: float
+    bounds: Array  # bound of the relative error of each wanted average, shape (W,)
+    time_ratio: float  # computing time with it over that without it
 
 
 @dataclass(frozen=True)
 class Task:
-    """What is to be chosen from.
+    """What is to be chosen from, for W wanted averages."""
 
-    Attributes
-    ----------
-    want : ndarray, shape (W,)
-        Wanted relative errors.
-    fixed : ndarray, shape (W,)
-        Errors that no choice changes, for instance of settling.
-    scatter : ndarray, shape (W,)
-        Half width of the confidence interval over the average, after averaging over `window`.
-    window : float
-        Bearing time that the scatter belongs to (s).
-    settle : float
-        Bearing time before the averaging (s).
-    least, most : float
-        Shortest and longest averaging (s).
-    rate : float
-        Computing time for a second of bearing time, with everything (s).
-    """
-
-    want: Array
-    fixed: Array
-    scatter: Array
-    window: float
-    settle: float
-    least: float
-    most: float
-    rate: float
+    want: Array  # wanted relative errors, shape (W,)
+    fixed: Array  # errors that no choice changes, for instance of settling, shape (W,)
+    scatter: Array  # half width of the confidence interval over the average, after averaging over `window`, shape (W,)
+    window: float  # bearing time that the scatter belongs to (s)
+    settle: float  # bearing time before the averaging (s)
+    least: float  # shortest averaging (s)
+    most: float  # longest averaging (s)
+    rate: float  # computing time for a second of bearing time, with everything (s)
 
 
 @dataclass(frozen=True)
 class Choice:
-    """A set of simplifications with its length and its errors.
+    """A set of simplifications with its length and its errors."""
 
-    Attributes
-    ----------
-    left_out : tuple of str
-        Simplifications that are made.
-    numerics : str
-        Choice of nodes and tolerances.
-    averaging : float
-        Bearing time of the averaging (s).
-    cost : float
-        Computing time (s).
-    bounds : ndarray, shape (W,)
-        Errors of model, nodes, tolerances and settling.
-    errors : ndarray, shape (W,)
-        The same with the statistical error.
-    within : bool
-        Whether every error is within the wish, and the cost within the budget.
-    """
-
-    left_out: tuple[str, ...]
-    numerics: str
-    averaging: float
-    cost: float
-    bounds: Array
-    errors: Array
-    within: bool
+    left_out: tuple[str, ...]  # simplifications that are made
+    numerics: str  # choice of nodes and tolerances
+    averaging: float  # bearing time of the averaging (s)
+    cost: float  # computing time (s)
+    bounds: Array  # errors of model, nodes, tolerances and settling, shape (W,)
+    errors: Array  # the same with the statistical error
+    within: bool  # whether every error is within the wish, and the cost within the budget
 
 
 def choose(
     task: Task, simplifications: Sequence[Option], numerics: Sequence[Option], budget: float | None = None
 ) -> Choice:
-    """The cheapest choice within the wish; with a budget, the most exact one within the budget.
-
-    Parameters
-    ----------
-    task : Task
-        What is wanted, and what the run is like.
-    simplifications : sequence of Option
-        Each may be made or not; at most 16.
-    numerics : sequence of Option
-        One of them is taken.
-    budget : float, optional
-        Most computing time (s).
-
-    Returns
-    -------
-    Choice
-        Where nothing is within the wish, the one with the smallest error over its wish.
+    """The cheapest choice within the wish, of any of the simplifications (at most 16) and one of the numerics. With a budget of
+    computing time (s) it is the most exact one within the budget; where nothing is within the wish, the one with the smallest
+    error over its wish.
     """
     found = [
         _priced(task, made, numbers, budget)

@@ -31,50 +31,20 @@ KEPT: Final = (USUAL, EXACT)
 
 @dataclass(frozen=True)
 class Decision:
-    """What a plan takes.
-
-    Attributes
-    ----------
-    choice : Choice
-        With the errors and the cost of the whole.
-    found : Probe
-        The probe of the whole.
-    made : tuple of Candidate
-        The simplifications that are made.
-    effects : mapping
-        Fields of `Effects` that they change.
-    accuracy : str
-        Preset of the tolerances.
-    struck : frozenset of str
-        Simplifications that made the error of the whole too large.
-    task : Task
-        What was chosen from.
-    unseen : ndarray, shape (W,)
-        Room for what the probes could not see, over the sizes of the averages; part of the bounds of the choice.
-    """
+    """What a plan takes: the choice, with errors and cost of the whole, and the simplifications that are made."""
 
     choice: Choice
-    found: Probe
+    found: Probe  # the probe of the whole
     made: tuple[Candidate, ...]
-    effects: Mapping[str, Any]
-    accuracy: str
-    struck: frozenset[str]
-    task: Task
-    unseen: Array
+    effects: Mapping[str, Any]  # fields of `Effects` that are changed
+    accuracy: str  # preset of the tolerances
+    struck: frozenset[str]  # simplifications that made the error of the whole too large
+    task: Task  # what was chosen from
+    unseen: Array  # room for what the probes could not see, over the sizes; part of the bounds of the choice
 
 
 def decide(wishes: Wishes, seen: Seen, looker: Looker) -> Decision:
-    """Choose, run the choice as a whole, and choose again where its error is larger than that of its parts.
-
-    Parameters
-    ----------
-    wishes : Wishes
-        What is asked for.
-    seen : Seen
-        What the runs have shown.
-    looker : Looker
-        Runs the whole.
-    """
+    """Choose, run the choice as a whole, and choose again where its error is larger than that of its parts."""
     ground, wish = seen.ground, wishes.size
     task = Task(
         want=wish,

@@ -39,64 +39,23 @@ TOLD_FROM_SCATTER: Final = 2.8
 
 @dataclass(frozen=True)
 class Ground:
-    """A run of a scene with everything on.
+    """A run of a scene with everything on."""
 
-    Attributes
-    ----------
-    start : Start
-        The state at its end.
-    value : dict of str to float
-        The averages over its settled part.
-    size : dict of str to float
-        What their errors are shares of (`trbdyn.study.planning.sizes`).
-    scatter : ndarray, shape (W,)
-        Half widths of their confidence intervals over their sizes.
-    drift : ndarray, shape (W,)
-        What the averages may still change by, over their sizes.
-    window : float
-        Length of the settled part (s).
-    creep_time : float
-        Time of the rollers' creep (s); nan where it is not known.
-    rate : float
-        Processor time for a second of bearing time (s).
-    notes : tuple of str
-        Where it could be wrong.
-    """
-
-    start: Start
-    value: dict[str, float]
-    size: dict[str, float]
-    scatter: Array
-    drift: Array
-    window: float
-    creep_time: float
-    rate: float
-    notes: tuple[str, ...]
+    start: Start  # the state at its end
+    value: dict[str, float]  # the averages over its settled part
+    size: dict[str, float]  # what their errors are shares of (`trbdyn.study.planning.sizes`)
+    scatter: Array  # half widths of their confidence intervals over their sizes, shape (W,)
+    drift: Array  # what they may still change by, over their sizes, shape (W,)
+    window: float  # length of the settled part (s)
+    creep_time: float  # time of the rollers' creep (s); nan where it is not known
+    rate: float  # processor time for a second of bearing time (s)
+    notes: tuple[str, ...]  # where it could be wrong
 
 
 def run_ground(subject: Subject, want: Mapping[str, float], period: float, length: Length, effort: float) -> Ground:
-    """Run a scene or an assembly as long as its share of the time allows.
-
-    Parameters
-    ----------
-    subject : Scene or Assembly
-        What is run, with everything on.
-    want : mapping of str to float
-        Wanted relative error by the name of the average.
-    period : float
-        Time of a turn of the shaft, or of the outer ring where the shaft rests (s).
-    length : Length
-        What to keep, and the processor time after which the run ends: how dear a second of bearing time is once the motion has
-        settled is not known beforehand.
-    effort : float
-        Processor time of the whole plan (s).
-
-    Raises
-    ------
-    InputError
-        If it is not enough for as many records as averages need.
-    StepError
-        If the run fails.
+    """Run a scene or an assembly with everything on, as long as its share of the time allows: how dear a second of bearing time
+    is once the motion has settled is not known beforehand. `period` is the time of a turn (s), `effort` the processor time of
+    the whole plan (s), which must be enough for as many records as averages need.
     """
     ran = run_quietly(subject, USUAL_ACCURACY, replace(length, duration=MOST_TURNS * period))
     if ran.records is None or ran.end is None or ran.failure not in ("", TOO_LONG):
@@ -170,18 +129,9 @@ def _drift(records: Records, names: Sequence[str], size: Mapping[str, float], se
 
 
 def _left_to_grow(last: Records, grown: float, power: float) -> float:
-    """What is still to come of a change, over what a growing whirl brought it from the quarter before to the last one.
-
-    The whirl cannot become larger than the play of the cage; of several cages the one that moves most counts.
-
-    Parameters
-    ----------
-    last : Records
-        The last quarter.
-    grown : float
-        Growth of the whirl (ln of its size) in a quarter.
-    power : float
-        Power of the whirl's size with which the average changes.
+    """What is still to come of a change, over what a growing whirl brought it from the quarter before to the last one. The
+    whirl grows by `grown` (ln of its size) in a quarter, and cannot become larger than the play of the cage; of several cages
+    the one that moves most counts. The average changes with the `power` of its size.
     """
     sizes = [float(value) for name, value in last.averages().items() if name.endswith("orbit_rms_over_cpr")]
     size = max(*sizes, 1e-6)

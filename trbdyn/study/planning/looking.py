@@ -52,40 +52,18 @@ LEAST_SAVING: Final = 0.03
 
 @dataclass
 class Seen:
-    """What the runs of a plan have shown.
-
-    Attributes
-    ----------
-    ground : Ground
-        The run that all stands on.
-    base, truth : Probe
-        With all effects: the usual nodes and tolerances, and the most exact ones.
-    candidates : list of Candidate
-        What may be simplified.
-    probes : dict of str to Probe
-        Of each candidate alone, by its name.
-    usual_error : dict of str to Influence
-        The usual nodes and tolerances against the most exact ones, by the name of the average.
-    alone : dict of str to dict
-        The same of each candidate against the usual.
-    least_saving : float
-        Share of the time that a simplification must save to be seen.
-    rows : list of Row
-        What was looked at beside the candidates.
-    notes : list of str
-        Where the answer could be wrong.
-    """
+    """What the runs of a plan have shown."""
 
     ground: Ground
-    base: Probe
-    truth: Probe
-    candidates: list[Candidate]
-    probes: dict[str, Probe]
-    usual_error: dict[str, Influence]
-    alone: dict[str, dict[str, Influence]]
-    least_saving: float
-    rows: list[Row] = field(default_factory=list)
-    notes: list[str] = field(default_factory=list)
+    base: Probe  # with all effects, the usual nodes and tolerances
+    truth: Probe  # the same, and the most exact ones
+    candidates: list[Candidate]  # what may be simplified
+    probes: dict[str, Probe]  # of each candidate alone, by its name
+    usual_error: dict[str, Influence]  # the usual against the most exact, by average
+    alone: dict[str, dict[str, Influence]]  # of each candidate against the usual, by its name
+    least_saving: float  # share of the time that a simplification must save to be seen
+    rows: list[Row] = field(default_factory=list)  # what was looked at beside the candidates
+    notes: list[str] = field(default_factory=list)  # where the answer could be wrong
 
     def new_warning(self, name: str) -> str:
         """What the watch said of a candidate's run, where it said nothing of the run with everything; else empty."""
@@ -94,13 +72,7 @@ class Seen:
 
 
 class Looker:
-    """The runs of one plan.
-
-    Parameters
-    ----------
-    wishes : Wishes
-        What is asked for.
-    """
+    """The runs of one plan."""
 
     def __init__(self, wishes: Wishes) -> None:
         self.wishes, scene, period = wishes, wishes.scene, wishes.period
@@ -120,14 +92,8 @@ class Looker:
         self.began = clock.process_time()
 
     def look(self) -> Seen:
-        """Make all runs but those of whole choices.
-
-        Raises
-        ------
-        InputError
-            If a wanted average is zero, or the effort is not enough.
-        StepError
-            If the scene cannot be run.
+        """Make all runs but those of whole choices. An average that is zero, too little effort, and a scene that cannot be run
+        are errors.
         """
         wishes = self.wishes
         self.ground = run_ground(self.usual, wishes.want, wishes.period, self._share(OF_GROUND), wishes.effort)
@@ -149,16 +115,8 @@ class Looker:
         return TRANSIENT * self.length.duration
 
     def probe(self, effects: Mapping[str, Any], accuracy: str, cost: float = 1.0) -> Probe:
-        """Run the scene with other effects from the state that all probes start from.
-
-        Parameters
-        ----------
-        effects : mapping
-            Fields of `Effects` that are changed.
-        accuracy : str
-            Preset of the tolerances.
-        cost : float
-            Computing time that is expected, over that of the usual probe.
+        """Run the scene with other fields of `Effects` from the state that all probes start from. `cost` is the computing time
+        that is expected, over that of the usual probe.
         """
         try:
             scene = changed(self.usual, effects, self.ground.start)
@@ -237,13 +195,7 @@ class Looker:
         return self.probe(one.effects, one.accuracy)
 
     def _usable(self, name: str, found: Probe) -> Probe:
-        """A probe that others are compared with.
-
-        Raises
-        ------
-        InputError
-            If it failed, or a batch has no value of a wanted average.
-        """
+        """A probe that others are compared with: an error where it failed, or a batch has no value of a wanted average."""
         if not found.failure and all(np.isfinite(batch).all() for batch in found.batches.values()):
             return found
         why = found.failure or "it is too short for averages of each of its parts"

@@ -18,13 +18,7 @@ LEAST = 1e-2
 
 
 def draw(plan: Plan) -> Any:
-    """Draw the influence of each simplification on each wanted average, and its computing time.
-
-    Parameters
-    ----------
-    plan : Plan
-        The plan.
-    """
+    """Draw the influence of each simplification on each wanted average, and its computing time."""
     rows = [row for row in plan.rows if math.isfinite(row.time_ratio)][::-1]
     with styled():
         figure, (left, right) = plt.subplots(

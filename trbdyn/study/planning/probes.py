@@ -44,50 +44,24 @@ PATIENCE: Final = 4.0
 
 @dataclass(frozen=True)
 class Length:
-    """How long probes are, and what they keep.
+    """How long probes are, and what they keep."""
 
-    Attributes
-    ----------
-    duration, save_every : float
-        Bearing time, and time between records (s).
-    groups : tuple of str
-        Groups of records.
-    patience : float
-        Processor time after which a run is ended (s) that has taken more than `steps`.
-    steps : float
-        Steps before which it is not ended: what the watch over a run measures beside it may take longer than the run.
-    """
-
-    duration: float
-    save_every: float
-    groups: tuple[Any, ...]
-    patience: float
-    steps: float = 0.0
+    duration: float  # bearing time (s)
+    save_every: float  # time between records (s)
+    groups: tuple[Any, ...]  # of records
+    patience: float  # processor time after which a run is ended (s) that has taken more than `steps`
+    steps: float = 0.0  # the watch over a run may take longer than its steps, so fewer never end it
 
 
 @dataclass(frozen=True)
 class Probe:
-    """What a short run gave.
+    """What a short run gave."""
 
-    Attributes
-    ----------
-    batches : dict of str to ndarray
-        The wanted averages in each batch.
-    rate : float
-        Processor time of the steps for a second of bearing time (s).
-    failure : str
-        Why it cannot be used; empty if it can.
-    warned : tuple of str
-        What the watch over the run said.
-    steps : float
-        How many steps it took.
-    """
-
-    batches: dict[str, Array]
-    rate: float
-    failure: str = ""
-    warned: tuple[str, ...] = ()
-    steps: float = 0.0
+    batches: dict[str, Array]  # the wanted averages in each batch
+    rate: float  # processor time of the steps for a second of bearing time (s)
+    failure: str = ""  # why it cannot be used; empty if it can
+    warned: tuple[str, ...] = ()  # what the watch over the run said
+    steps: float = 0.0  # how many it took
 
 
 TOO_LONG: Final = "it took much longer than was expected"
@@ -96,28 +70,15 @@ TOO_LONG: Final = "it took much longer than was expected"
 
 @dataclass(frozen=True)
 class Ran:
-    """A run of a scene or an assembly.
-
-    Attributes
-    ----------
-    rate : float
-        Processor time of the steps for a second of bearing time (s).
-    failure : str
-        Why it cannot be used; empty if it can.
-    records : Records or None
-        Its records; None where there are none.
-    end : Start or None
-        The state at its end. What is held begins at its place there only where the model counts displacements from the start:
-        another model places it again.
-    steps : float
-        How many steps it took.
+    """A run of a scene or an assembly. What is held begins at its place in the state at the end only where the model counts
+    displacements from the start: another model places it again.
     """
 
-    rate: float
-    failure: str
+    rate: float  # processor time of the steps for a second of bearing time (s)
+    failure: str  # why it cannot be used; empty if it can
     records: Records | None = None
-    end: Start | None = None
-    steps: float = 0.0
+    end: Start | None = None  # the state at its end
+    steps: float = 0.0  # how many it took
 
 
 def run_quietly(subject: Subject, accuracy: str, length: Length) -> Ran:
@@ -157,19 +118,7 @@ def run_quietly(subject: Subject, accuracy: str, length: Length) -> Ran:
 
 
 def probe(subject: Subject, accuracy: str, length: Length, names: Sequence[str]) -> Probe:
-    """Run a scene or an assembly from a state and average it in batches.
-
-    Parameters
-    ----------
-    subject : Scene or Assembly
-        What is run, with the state that it starts from.
-    accuracy : str
-        Preset of the tolerances.
-    length : Length
-        How long, and what to keep.
-    names : sequence of str
-        Averages of the summary.
-    """
+    """Run a scene or an assembly from the state that it starts with, and average it in batches."""
     ran = run_quietly(subject, accuracy, length)
     if ran.records is None or ran.failure:
         return Probe({}, ran.rate, ran.failure)
@@ -200,23 +149,8 @@ def _seated(assembly: Assembly) -> tuple[int, list[Any]]:
 
 
 def carried_over(subject: Subject, state: Start, of: Subject) -> Subject:
-    """A subject that starts from a state of another one, whose switches differ.
-
-    Places and velocities are the same; integrals of losses begin at zero where the two do not have the same losses.
-
-    Parameters
-    ----------
-    subject : Scene or Assembly
-        What starts.
-    state : Start
-        The state.
-    of : Scene or Assembly
-        What it is a state of.
-
-    Raises
-    ------
-    InputError
-        If the subject cannot be used.
+    """A subject that starts from a state of another one, whose switches differ. Places and velocities are the same; integrals
+    of losses begin at zero where the two do not have the same losses.
     """
     (_, befores), (size, layouts) = _layouts(of), _layouts(subject)
     given, vector = np.array(state.state_vector), np.zeros(size)
@@ -270,17 +204,7 @@ class Influence:
 
 
 def influence(other: Probe, base: Probe, scale: Mapping[str, float], name: str) -> Influence:
-    """Influence of what differs between two probes on an average.
-
-    Parameters
-    ----------
-    other, base : Probe
-        The probe with the change, and the one without.
-    scale : mapping of str to float
-        The averages' sizes.
-    name : str
-        The average.
-    """
+    """Influence of what differs between two probes on an average, over its size."""
     if other.failure or base.failure or scale[name] == 0.0:
         return Influence(math.nan, math.nan)
     difference = (other.batches[name] - base.batches[name]) / abs(scale[name])

@@ -37,13 +37,5 @@ def least_size(name: str) -> float:
 
 
 def size_of(name: str, value: float) -> float:
-    """What errors of an average are shares of.
-
-    Parameters
-    ----------
-    name : str
-        One of `trbdyn.results.confidence.AVERAGES`, of several bearings with the name of its bearing before it.
-    value : float
-        Its value.
-    """
+    """What errors of an average are shares of."""
     return max(abs(value), least_size(name))

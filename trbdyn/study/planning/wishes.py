@@ -24,24 +24,12 @@ TOLD_APART: Final = 0.3
 
 @dataclass(frozen=True)
 class Wishes:
-    """What is asked of a plan.
-
-    Attributes
-    ----------
-    scene : Scene or Assembly
-        What is simulated.
-    want : dict of str to float
-        Wanted relative error by the name of the average.
-    budget : float or None
-        Most computing time of the run (s).
-    effort : float
-        Computing time for the probes, about (s).
-    """
+    """What is asked of a plan."""
 
     scene: Subject
-    want: dict[str, float]
-    budget: float | None
-    effort: float
+    want: dict[str, float]  # wanted relative error by the name of the average
+    budget: float | None  # most computing time of the run (s)
+    effort: float  # computing time for the probes, about (s)
 
     @property
     def names(self) -> list[str]:
@@ -66,21 +54,8 @@ class Wishes:
 
 
 def checked(scene: Subject, want: Mapping[str, float], budget: float | None, effort: float) -> Wishes:
-    """What is asked for, if it can be planned.
-
-    Parameters
-    ----------
-    scene : Scene or Assembly
-        What is simulated.
-    want : mapping of str to float
-        Wanted relative error by the name of the average.
-    budget, effort : float
-        Computing time of the run at most, and of the probes (s).
-
-    Raises
-    ------
-    InputError
-        If a name or number cannot be used, or the scene has no constant speed and loads.
+    """What is asked for, if it can be planned: an error where a name or number cannot be used, or the scene has no constant
+    speed and loads.
     """
     if not want:
         raise InputError.of("want", dict(want), "must name an average with its error, for instance torque = 0.02")
@@ -127,20 +102,5 @@ def with_effects(scene: Subject, effects: Mapping[str, Any]) -> Subject:
 
 
 def changed(scene: Subject, effects: Mapping[str, Any], start: Start) -> Subject:
-    """A scene or an assembly with other effects that starts in a state, which is carried over to the other effects.
-
-    Parameters
-    ----------
-    scene : Scene or Assembly
-        The scene; `start` fits to it.
-    effects : mapping
-        Fields of `Effects` that are changed.
-    start : Start
-        The state in which it starts.
-
-    Raises
-    ------
-    InputError
-        If the effects cannot be used.
-    """
+    """A subject with other fields of `Effects` that starts in a state of it, which is carried over to the other effects."""
     return carried_over(with_effects(scene, effects), start, scene)
