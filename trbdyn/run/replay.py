@@ -201,7 +201,7 @@ class Replay:
         channels = [values.get(name, (0.0, 0.0)) for name, _, _ in _core.motion_table()]
         table = np.array([[time, *(number for channel in channels for number in channel), 0.0]])
         motion = RingMotion(table, 0.0, time, time, angle, outer_angle)
-        return motion.open(self._simulation.bearings[0].model, time, self.state(index), {})
+        return motion.open(self._simulation.bearings[0].model, time, self.state(index))
 
     def record(self, index: int) -> dict[str, Array]:
         """A record, evaluated again: what was recorded, to rounding, but for spin angles and energies."""

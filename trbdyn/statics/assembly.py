@@ -20,7 +20,8 @@ from trbdyn.model.assembly import Assembly
 from trbdyn.model.motion import value_at
 from trbdyn.model.ring_body import RingBody
 from trbdyn.model.scene import Scene
-from trbdyn.statics.shaft_balance import Answer, Balance, ShaftOnBearings, axis_of, ring_slopes, turns_of
+from trbdyn.statics.free_ring import ALONG, axis_of
+from trbdyn.statics.shaft_balance import Answer, Balance, ShaftOnBearings, ring_slopes, turns_of
 from trbdyn.statics.stiffness import Modes, Stiffness
 from trbdyn.statics.stiffness import stiffness as stiffness
 
@@ -224,7 +225,7 @@ class ShaftEquilibrium(Tabled):
         arm = number_of("position", position) - self._reference
         place = self._balance.place.copy()
         axis, _ = axis_of(place[3:5])
-        place[:3] += arm * (axis - np.array([0.0, 0.0, 1.0]))
+        place[:3] += arm * (axis - ALONG)
         return self._system.at(place, position, self._balance.answers)
 
     def _shown(self) -> Shown:

@@ -30,22 +30,10 @@ STRONGLY_PRESSED: Final = 2e-6
 
 
 def place_cage(model: _core.Model, scene: Scene, motion: RingMotion, vector: Array) -> None:
-    """Put the cage where a run begins, and rollers that carry nothing into their pockets.
-
-    Parameters
-    ----------
-    model : _core.Model
-        The scene's model.
-    scene : Scene
-        The scene.
-    motion : RingMotion
-        Motion of the ring.
-    vector : ndarray, shape (n_state,)
-        The state, with the rollers placed; changed.
-    """
+    """Put the cage into a state whose rollers are placed, as a run begins, and rollers that carry nothing into their pockets."""
     state, start, cage = StateView(model.state_layout(), vector), scene.start, scene.bearing.cage
     orbit = scene.orbit_speed(start.time)
-    onlooker = motion.open(model, motion.start, vector, {})
+    onlooker = motion.open(model, motion.start, vector)
     load = _inner_load(onlooker, motion.start, vector)
     # the heaviest loads push rollers along the axis by more than the play of their pockets: the cage goes with those that
     # carry, and takes along the cup the others that it would otherwise push into, but for those that would meet the inner ring
@@ -90,7 +78,7 @@ def pressed_rollers(model: _core.Model, scene: Scene, motion: RingMotion, vector
     """
     if not scene.effects.has_cage or scene.start.kind == "state":
         return ""
-    onlooker = motion.open(model, motion.start, vector, {})
+    onlooker = motion.open(model, motion.start, vector)
     depth = _interference(onlooker, motion.start, vector)
     worst, roller = float(depth.max()), int(np.argmax(depth.max(axis=1)))
     if not worst > STRONGLY_PRESSED:

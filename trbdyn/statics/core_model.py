@@ -25,13 +25,7 @@ if TYPE_CHECKING:
 
 
 def build_model(scene: Scene, instruction_set: str = "") -> _core.Model:
-    """The core's model of a scene.
-
-    Raises
-    ------
-    InputError
-        If the scene's numbers do not fit together.
-    """
+    """The core's model of a scene; `InputError` if the scene's numbers do not fit together."""
     try:
         return model_of(scene, parameter_block(scene), instruction_set)
     except _core.CoreInputError as error:

@@ -77,17 +77,7 @@ class Equilibrium:
 
 
 class EquilibriumSolver:
-    """Solves for the equilibrium of a scene's ring and rollers.
-
-    Parameters
-    ----------
-    model : _core.Model
-        The scene's model.
-    scene : Scene
-        The scene.
-    angles : ndarray, shape (Z,)
-        Orbit angles at which the rollers stand (rad).
-    """
+    """Solves for the equilibrium of a scene's ring with its rollers at some orbit angles (rad), shape (Z,)."""
 
     def __init__(self, model: _core.Model, scene: Scene, angles: Array) -> None:
         self.model, self.scene, self.angles = model, scene, angles
@@ -101,24 +91,10 @@ class EquilibriumSolver:
         share: float = 0.0,
         displacement: Array | None = None,
     ) -> Equilibrium:
-        """The equilibrium under the load at a time.
+        """The equilibrium under the load at a time (s), or with the ring at a displacement (m, rad), shape (5,), whatever its
+        load is.
 
-        Parameters
-        ----------
-        time : float
-            Time (s).
-        guess : sequence of two Equilibrium, optional
-            Equilibria close by: the search starts from `share` of the way from the first to the second. The loads of
-            what is found are then 0: they are not asked for.
-        share : float
-            See `guess` (1).
-        displacement : ndarray, shape (5,), optional
-            The ring stands here (m, rad), whatever the load is: only the rollers are free.
-
-        Raises
-        ------
-        LoadError
-            If the bearing cannot carry the load.
+        With a guess, two equilibria close by, the search starts from `share` of the way from the first to the second.
         """
         load = ring_load(self.scene, time)
         if displacement is None and self.scene.unloaded == "rests":

@@ -11,14 +11,21 @@ from trbdyn.statics.state_view import StateView
 
 Array = NDArray[np.float64]
 
-_ALONG = np.array([0.0, 0.0, 1.0])
+ALONG = np.array([0.0, 0.0, 1.0])
+"""The axis of a shaft or ring that is not tilted."""
 
 
-def axis_of(turn: Array) -> Array:
-    """The axis, shape (3,), of a ring that is rotated about x and y (rad), shape (2,)."""
-    angle = math.hypot(*turn)
+def axis_of(rotation: Array) -> tuple[Array, Array]:
+    """Direction of an axis that a rotation about x and y (rad) turned from z, shape (3,), and its slopes, shape (3, 2)."""
+    tx, ty = rotation
+    angle = math.hypot(tx, ty)
     sinc = float(np.sinc(angle / math.pi))
-    return np.array([sinc * turn[1], -sinc * turn[0], math.cos(angle)])
+    bend = (math.cos(angle) - sinc) / angle**2 if angle > 1e-4 else -1.0 / 3.0 + angle**2 / 30.0
+    axis = np.array([sinc * ty, -sinc * tx, math.cos(angle)])
+    slopes = np.array(
+        [[bend * tx * ty, sinc + bend * ty**2], [-sinc - bend * tx**2, -bend * tx * ty], [-sinc * tx, -sinc * ty]]
+    )
+    return axis, slopes
 
 
 def turn_of(axis: Array) -> Array:
@@ -28,24 +35,12 @@ def turn_of(axis: Array) -> Array:
     return np.array([-axis[1] / sinc, axis[0] / sinc])
 
 
-def place_ring(state: StateView, displacement: Array, offset: float) -> None:
-    """Put a free ring, at rest, at a displacement.
-
-    Parameters
-    ----------
-    state : StateView
-        The state; it is written to.
-    displacement : ndarray, shape (5,)
-        Translation of the ring along x, y, z (m), rotation about x, y (rad).
-    offset : float
-        Axial position of its centre of mass from the roller-centre plane (m): the state holds that of the centre of mass.
-    """
-    put_axis(state, displacement[:3], axis_of(displacement[3:]), offset)
-
-
 def put_axis(state: StateView, place: Array, axis: Array, offset: float, ring: str = "inner_ring") -> None:
-    """Put a free ring by the place of its roller-centre plane (m), shape (3,), and by its axis, shape (3,)."""
-    for name, value in zip("xyz", place + offset * (axis - _ALONG), strict=True):
+    """Put a free ring by the place of its roller-centre plane (m), shape (3,), and by its axis, shape (3,).
+
+    The state holds the place of its centre of mass, which lies at an axial offset (m) from that plane.
+    """
+    for name, value in zip("xyz", place + offset * (axis - ALONG), strict=True):
         state[f"{ring}_{name}"] = value
     state[f"{ring}_skew"] = math.asin(min(max(axis[1], -1.0), 1.0))
     state[f"{ring}_tilt"] = math.atan2(axis[0], axis[2])

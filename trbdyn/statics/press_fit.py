@@ -24,19 +24,11 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class PressFit:
-    """A seat of two rings.
+    """A seat of two rings."""
 
-    Attributes
-    ----------
-    bore, seat, outside : float
-        Diameters a, d and b (m); a is 0 for a solid shaft.
-    inner, outer : Material
-        What both are made of.
-    """
-
-    bore: float
-    seat: float
-    outside: float
+    bore: float  # diameter a (m); 0 for a solid shaft
+    seat: float  # diameter d (m)
+    outside: float  # diameter b (m)
     inner: Material
     outer: Material
 

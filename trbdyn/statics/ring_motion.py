@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
@@ -48,26 +49,14 @@ def start_angles(scene: Scene) -> Array:
 
 @dataclass(frozen=True)
 class RingMotion:
-    """Prescribed motion of the ring as the core takes it.
+    """Prescribed motion of the ring as the core takes it."""
 
-    Attributes
-    ----------
-    table : ndarray, shape (K, 44)
-        As of `trbdyn.model.flatten.motion_table`.
-    period : float
-        After the last knot the last part of the table, this long, repeats (s); 0: everything stays.
-    start : float
-        Time of the start (s).
-    angle_time, shaft_angle, outer_angle : float
-        A time (s), and the angles of shaft and outer ring then (rad).
-    """
-
-    table: Array
-    period: float
-    start: float
-    angle_time: float
-    shaft_angle: float
-    outer_angle: float
+    table: Array  # as of `trbdyn.model.flatten.motion_table`, shape (K, 44)
+    period: float  # after the last knot the last part of the table, this long, repeats (s); 0: everything stays
+    start: float  # time of the start (s)
+    angle_time: float  # the time of the two angles below (s)
+    shaft_angle: float  # (rad)
+    outer_angle: float  # of the outer ring (rad)
 
     def displacement(self, time: float) -> Array:
         """Where the ring stands at a time (s): translation (m), rotation (rad), shape (5,)."""
@@ -96,31 +85,27 @@ class RingMotion:
         """What the core takes: table, period, a time and the angles of shaft and outer ring then."""
         return self.table, self.period, self.angle_time, self.shaft_angle, self.outer_angle
 
-    def open(
-        self, model: _core.Model, time: float, vector: Array, settings: dict[str, float | str]
-    ) -> _core.Simulation:
-        """The core's simulation of this motion from a time (s) and state on.
-
-        Raises
-        ------
-        InputError
-            If the core cannot use the state, or times so far apart.
-        """
-        try:
-            return _core.Simulation((model,), (self.prescribed,), time, vector, settings)
-        except ValueError as error:
-            raise refused(error, settings) from None
+    def open(self, model: _core.Model, time: float, vector: Array) -> _core.Simulation:
+        """The core's simulation of this motion alone, without settings, from a time (s) and state on."""
+        return open_core([model], [self], time, vector, {})
 
 
-def refused(error: ValueError, settings: dict[str, float | str]) -> InputError:
-    """What the core says against a simulation: the integrator cannot do it, or else the state cannot be used."""
-    kind, text = settings.get("integrator", ""), str(error)
-    of_integrator = text.removeprefix(f"integrator = '{kind}': ")
-    return (
-        InputError.of("state", "given", text)
-        if of_integrator == text
-        else InputError.of("integrator", kind, of_integrator)
-    )
+def open_core(
+    models: Sequence[_core.Model],
+    motions: Sequence[RingMotion],
+    time: float,
+    vector: Array,
+    settings: dict[str, float | str],
+) -> _core.Simulation:
+    """The core's simulation of bearings from a time (s) and state on; `InputError` if it cannot use the state or the settings."""
+    try:
+        return _core.Simulation(tuple(models), tuple(one.prescribed for one in motions), time, vector, settings)
+    except ValueError as error:
+        kind, text = settings.get("integrator", ""), str(error)
+        of_integrator = text.removeprefix(f"integrator = '{kind}': ")
+        if of_integrator == text:
+            raise InputError.of("state", "given", text) from None
+        raise InputError.of("integrator", kind, of_integrator) from None
 
 
 def placed_again(model: _core.Model, scene: Scene, motion: RingMotion) -> str:
@@ -180,11 +165,6 @@ def ring_motion(model: _core.Model, scene: Scene) -> tuple[RingMotion, Equilibri
     The ring stands, or moves, where it is in equilibrium with evenly spaced rollers: rollers that start elsewhere do
     not shift it, as they pass through every place in turn. The rollers start in equilibrium with that ring where they
     stand.
-
-    Raises
-    ------
-    LoadError
-        If the bearing cannot carry the load.
     """
     even, angles, time = nominal_angles(scene), start_angles(scene), scene.start.time
     stands = scene.start.displacement if scene.ring == "held" else None

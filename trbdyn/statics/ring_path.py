@@ -68,24 +68,10 @@ class _Piece:
 def find_path(
     scene: Scene, solver: EquilibriumSolver, at_start: Equilibrium
 ) -> tuple[list[float | History], Array | None]:
-    """Displacement (m) and rotation (rad) of the ring in time, five quantities, and its joints: the times (s) at which a part of
-    what acts on the ring ends. Between them the knots only sample it.
+    """Displacement (m) and rotation (rad) of a ring that follows its load, five quantities in time, and its joints: the times
+    (s) at which a part of what acts on the ring ends. Between them the knots only sample it.
 
-    Parameters
-    ----------
-    scene : Scene
-        A scene with ``ring = 'follows'``.
-    solver : EquilibriumSolver
-        Solves for evenly spaced rollers.
-    at_start : Equilibrium
-        The equilibrium at the start.
-
-    Raises
-    ------
-    LoadError
-        If the bearing cannot carry the load at some time, or the ring jumps.
-    InputError
-        If the load turns too often.
+    The bearing must carry the load at all times (`LoadError`, also where the ring jumps); too many turns are an `InputError`.
     """
     quantities = list(scene.ring_quantities().values())
     moves = scene.rotating_load is not None and scene.period is not None

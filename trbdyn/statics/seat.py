@@ -36,40 +36,30 @@ from trbdyn.model.scene import Scene
 from trbdyn.statics.cage_start import pressed_rollers
 from trbdyn.statics.core_model import build_model, model_of
 from trbdyn.statics.equilibrium import Equilibrium
-from trbdyn.statics.free_ring import axis_of, put_axis, turn_of
+from trbdyn.statics.free_ring import ALONG, axis_of, put_axis, turn_of
 from trbdyn.statics.plausible import unusual
-from trbdyn.statics.ring_motion import RingMotion, housing_hold, placed_again, refused, ring_motion
+from trbdyn.statics.ring_motion import RingMotion, housing_hold, open_core, placed_again, ring_motion
 from trbdyn.statics.start import start_state
 from trbdyn.statics.state_view import StateView
 
 Array = NDArray[np.float64]
 Layout = list[tuple[str, int, tuple[int, ...]]]
 
-_ALONG = np.array([0.0, 0.0, 1.0])
-
 
 @dataclass(frozen=True)
 class Seat:
-    """A bearing on a shaft.
-
-    Attributes
-    ----------
-    scene : Scene
-        The bearing, its oil, effects and start, in its own axes; its ring is held. Its displacement and misalignment are where
-        the ring stands at the start, see `Seat.at`.
-    mass_offset : float
-        Axial position of the shaft's centre of mass from the bearing's roller-centre plane, along the bearing's own z (m).
-    turned : bool
-        Whether the bearing sits on the shaft the other way round.
-    shift : float
-        Axial displacement of the ring, along the bearing's own z, where the shaft stands at zero (m): negative is preload,
-        positive end play.
-    """
+    """A bearing on a shaft."""
 
     scene: Scene
+    """The bearing, its oil, effects and start, in its own axes; its ring is held. Its displacement and misalignment
+    are where the ring stands at the start, see `Seat.at`."""
     mass_offset: float
-    turned: bool = False
+    """Axial position of the shaft's centre of mass from the bearing's roller-centre plane, along the bearing's own
+    z (m)."""
+    turned: bool = False  # whether the bearing sits on the shaft the other way round
     shift: float = 0.0
+    """Axial displacement of the ring, along the bearing's own z, where the shaft stands at zero (m): negative is
+    preload, positive end play."""
 
     def axes(self, vector: Array) -> Array:
         """A vector of the shaft's axes in those of the bearing, or back."""
@@ -84,22 +74,13 @@ class Seat:
         return {"mass_offset": self.mass_offset, "turned": self.turned, "shift": self.shift}
 
     def ring_place(self, shaft: Array) -> Array:
-        """Where the ring stands, in the bearing's axes.
-
-        Parameters
-        ----------
-        shaft : ndarray, shape (5,)
-            Displacement of the shaft's centre of mass (m) and rotation about x and y (rad), in the shaft's axes.
-
-        Returns
-        -------
-        ndarray, shape (5,)
-            The same of the ring at its roller-centre plane.
+        """Where the ring stands at its roller-centre plane, in the bearing's axes, with the displacement of the shaft's centre
+        of mass (m) and its rotation about x and y (rad), in the shaft's axes; both of shape (5,).
         """
-        axis = self.axes(axis_of(shaft[3:]))
+        axis = self.axes(axis_of(shaft[3:])[0])
         if self.turned:
             axis = -axis
-        place = self.axes(shaft[:3]) + self.shift * _ALONG - self.mass_offset * (axis - _ALONG)
+        place = self.axes(shaft[:3]) + self.shift * ALONG - self.mass_offset * (axis - ALONG)
         return np.concatenate([place, turn_of(axis)])
 
     def at(self, shaft: Array) -> Seat:
@@ -114,30 +95,20 @@ class Seat:
 
 @dataclass(frozen=True)
 class Seating:
-    """Bearings on a shaft at the start, and what acts on it.
+    """Bearings on a shaft at the start, and what acts on it."""
 
-    Attributes
-    ----------
-    seats : mapping of str to Seat
-        The bearings by name. The first one must not be turned: its axes are those of the shaft.
-    body : RingBody
-        Mass, moments of inertia, unbalance, dampers and supports of the shaft with all that is fixed to it. The seats say where
-        its centre of mass lies.
-    shaft : ndarray, shape (5,)
-        Displacement of its centre of mass (m), and rotation about x and y (rad).
-    loads : mapping of str to Load
-        What acts on the shaft at the first bearing's roller-centre plane, by the names of the core's channels: ``"force_x"``,
-        ``"moment_y"`` and so on (N, N m); what is not named is zero. With a ``"torque"`` (N m) the shaft turns under it, in place
-        of the prescribed speed.
-    one_housing : bool
-        Whether all outer rings sit in one housing, which the scene of each bearing has in its own axes, and not each in its own.
-    """
-
-    seats: Mapping[str, Seat]
+    seats: Mapping[str, Seat]  # the bearings by name. The first one must not be turned: its axes are those of the shaft
     body: RingBody
-    shaft: Array
+    """Mass, moments of inertia, unbalance, dampers and supports of the shaft with all that is fixed to it. The
+    seats say where its centre of mass lies."""
+    shaft: Array  # displacement of its centre of mass (m), and rotation about x and y (rad), shape (5,)
     loads: Mapping[str, Load] = field(default_factory=dict)
+    """What acts on the shaft at the first bearing's roller-centre plane, by the names of the core's channels:
+    ``"force_x"``, ``"moment_y"`` and so on (N, N m); what is not named is zero. With a ``"torque"`` (N m) the shaft
+    turns under it, in place of the prescribed speed."""
     one_housing: bool = False
+    """Whether all outer rings sit in one housing, which the scene of each bearing has in its own axes, and not each
+    in its own."""
 
     @property
     def torque(self) -> Load | None:
@@ -152,42 +123,18 @@ class Seating:
 
 @dataclass(frozen=True)
 class SeatedBearing:
-    """What the core takes of a bearing.
+    """What the core takes of a bearing."""
 
-    Attributes
-    ----------
-    name : str
-        Its name; none where it is simulated alone.
-    number : int
-        Its place among the bearings.
-    scene : Scene
-        The bearing, its oil, effects and start, in its own axes.
-    model : _core.Model
-        Its model; the first bearing of a shaft has the shaft.
-    motion : RingMotion
-        What is prescribed.
-    equilibrium : Equilibrium
-        Rollers and ring at the start.
-    layout : list
-        Where the parts of its state lie in the state of the whole.
-    unusual : tuple of str
-        What can hardly be meant in its scene.
-    first : int
-        Where its quantities begin in a row of the core, without peaks.
-    seat : Seat, optional
-        Where it sits on a shaft.
-    """
-
-    name: str
-    number: int
-    scene: Scene
-    model: _core.Model
-    motion: RingMotion
-    equilibrium: Equilibrium
-    layout: Layout
-    unusual: tuple[str, ...]
-    first: int = 0
-    seat: Seat | None = None
+    name: str  # its name; none where it is simulated alone
+    number: int  # its place among the bearings
+    scene: Scene  # the bearing, its oil, effects and start, in its own axes
+    model: _core.Model  # its model; the first bearing of a shaft has the shaft
+    motion: RingMotion  # what is prescribed
+    equilibrium: Equilibrium  # rollers and ring at the start
+    layout: Layout  # where the parts of its state lie in the state of the whole
+    unusual: tuple[str, ...]  # what can hardly be meant in its scene
+    first: int = 0  # where its quantities begin in a row of the core, without peaks
+    seat: Seat | None = None  # where it sits on a shaft
 
     @property
     def said(self) -> str:
@@ -206,21 +153,11 @@ class SeatedBearing:
 
 @dataclass(frozen=True)
 class Seated:
-    """What the core takes of one bearing, or of several on one shaft.
+    """What the core takes of one bearing, or of several on one shaft."""
 
-    Attributes
-    ----------
-    bearings : tuple of SeatedBearing
-        The bearings.
-    vector : ndarray
-        The state at the start.
-    time : float
-        When that is (s).
-    """
-
-    bearings: tuple[SeatedBearing, ...]
-    vector: Array
-    time: float
+    bearings: tuple[SeatedBearing, ...]  # the bearings
+    vector: Array  # the state at the start
+    time: float  # when that is (s)
 
     @property
     def moves(self) -> bool:
@@ -228,32 +165,13 @@ class Seated:
         return any(len(one.motion.table) > 1 for one in self.bearings)
 
     def open(self, time: float, vector: Array, settings: dict[str, float | str]) -> _core.Simulation:
-        """The core's simulation from a time (s) and state on.
-
-        Raises
-        ------
-        InputError
-            If the core cannot use the state, or times so far apart.
-        """
-        models = tuple(one.model for one in self.bearings)
-        try:
-            return _core.Simulation(
-                models, tuple(one.motion.prescribed for one in self.bearings), time, vector, settings
-            )
-        except ValueError as error:
-            raise refused(error, settings) from None
+        """The core's simulation from a time (s) and state on; `InputError` if it cannot use the state or the settings."""
+        models, motions = [one.model for one in self.bearings], [one.motion for one in self.bearings]
+        return open_core(models, motions, time, vector, settings)
 
 
 def seat_alone(scene: Scene, instruction_set: str = "") -> Seated:
-    """What the core takes of one bearing: its ring is held, follows its load, or is free.
-
-    Raises
-    ------
-    InputError
-        If the numbers do not fit together.
-    LoadError
-        If the bearing cannot carry the load.
-    """
+    """What the core takes of one bearing: its ring is held, follows its load, or is free."""
     model = build_model(scene, instruction_set)
     motion, equilibrium = ring_motion(model, scene)
     vector = start_state(model, scene, motion, equilibrium)
@@ -264,20 +182,7 @@ def seat_alone(scene: Scene, instruction_set: str = "") -> Seated:
 
 
 def seat_all(seating: Seating, instruction_set: str = "") -> Seated:
-    """What the core takes of bearings on a shaft that stands still at a place.
-
-    Parameters
-    ----------
-    seating : Seating
-        The bearings, the shaft, its place and its loads.
-    instruction_set : str
-        Kernel variant; the fastest by default.
-
-    Raises
-    ------
-    InputError
-        If the numbers do not fit together.
-    """
+    """What the core takes of bearings on a shaft that stands still at a place."""
     seats, body, shaft, loads = list(seating.seats.values()), seating.body, seating.shaft, seating.loads
     _check(seats, body, loads)
     placed = [seat.at(shaft) for seat in seats]
@@ -312,7 +217,7 @@ def seat_all(seating: Seating, instruction_set: str = "") -> Seated:
             )
         )
         first += models[number].record_length
-    put_axis(StateView(layouts[0], vector), shaft[:3], axis_of(shaft[3:]), 0.0)
+    put_axis(StateView(layouts[0], vector), shaft[:3], axis_of(shaft[3:])[0], 0.0)
     return Seated(tuple(bearings), vector, seats[0].scene.start.time)
 
 

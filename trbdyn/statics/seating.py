@@ -22,8 +22,9 @@ from trbdyn.model.ring_body import RingBody
 from trbdyn.model.scene import Scene
 from trbdyn.model.start import Start
 from trbdyn.statics.assembly import ShaftEquilibrium, equilibrium
+from trbdyn.statics.free_ring import axis_of
 from trbdyn.statics.seat import Seat, Seated, Seating, seat_all, seat_alone
-from trbdyn.statics.shaft_balance import axis_of, turns_of
+from trbdyn.statics.shaft_balance import turns_of
 
 Array = NDArray[np.float64]
 Parts = list[tuple[float, float | History]]
@@ -31,15 +32,7 @@ Parts = list[tuple[float, float | History]]
 
 @singledispatch
 def seated(subject: Any, instruction_set: str = "") -> Seated:
-    """What the core takes of a scene, of an assembly in its equilibrium, or of a seating.
-
-    Raises
-    ------
-    InputError
-        If the numbers do not fit together.
-    LoadError
-        If bearings cannot carry the load.
-    """
+    """What the core takes of a scene, of an assembly in its equilibrium, or of a seating."""
     expect("scene", subject, Scene, Assembly)
     raise AssertionError
 
@@ -55,13 +48,7 @@ def _of_assembly(assembly: Assembly, instruction_set: str = "") -> Seated:
 
 
 def _gone_on(seated: Seated, start: Start) -> Seated:
-    """Seated bearings in a state of a simulation that has begun as they do.
-
-    Raises
-    ------
-    InputError
-        If the state is not one of such a simulation.
-    """
+    """Seated bearings in the state of a simulation that began as they do."""
     vector, first = np.array(start.state_vector), seated.bearings[0]
     if vector.size != seated.vector.size:
         limit = f"must have {seated.vector.size} for these bearings"
@@ -86,13 +73,7 @@ def _gone_on(seated: Seated, start: Start) -> Seated:
 
 
 def seating_of(assembly: Assembly) -> Seating:
-    """Bearings and shaft of an assembly in equilibrium at the time at which its first bearing starts.
-
-    Raises
-    ------
-    LoadError
-        If the bearings cannot carry the loads, or nothing holds a motion of the shaft.
-    """
+    """Bearings and shaft of an assembly in equilibrium at the time at which its first bearing starts."""
     found = equilibrium(assembly, time=assembly.bearings[0].start.time)
     shaft, first = assembly.shaft, assembly.bearings[0]
     turn3, turn2 = turns_of(first)

@@ -21,6 +21,7 @@ from trbdyn.model.assembly import Assembly, ShaftBearing
 from trbdyn.model.motion import value_at
 from trbdyn.statics.core_model import normal_contacts
 from trbdyn.statics.equilibrium import nominal_angles
+from trbdyn.statics.free_ring import ALONG, axis_of
 
 Array = NDArray[np.float64]
 
@@ -28,63 +29,31 @@ MOST_FOLLOW: Final = 100.0
 """Largest motion of a roller, over that of its ring, by which it follows the ring. Where contacts hardly touch, slopes give more;
 between cone and cup, whose slopes differ by a few degrees, a roller goes some ten times as far at most."""
 
-_ALONG: Final = np.array([0.0, 0.0, 1.0])
-
 
 @dataclass(frozen=True)
 class Answer:
-    """What a bearing does where its inner ring stands, in the bearing's own frame.
+    """What a bearing does where its inner ring stands, in the bearing's own frame."""
 
-    Attributes
-    ----------
-    displacement : ndarray, shape (5,)
-        Place of the inner ring against the outer ring (m, rad).
-    reaction : ndarray, shape (5,)
-        Force and moment that hold the inner ring there (N, N m).
-    stiffness : ndarray, shape (5, 5)
-        Slopes of the reaction with the displacement.
-    rollers : ndarray, shape (Z, 4)
-        Offsets of each roller: radius, axial position (m), tilt, skew (rad).
-    follow : ndarray, shape (Z, 4, 5)
-        How each roller follows the ring.
-    loads : ndarray, shape (Z, 3)
-        Normal loads of the rollers at the outer ring, the inner ring and the rib (N).
-    energy : float
-        Potential (J).
-    """
-
-    displacement: Array
-    reaction: Array
-    stiffness: Array
-    rollers: Array
-    follow: Array
-    loads: Array
-    energy: float
+    displacement: Array  # place of the inner ring against the outer ring (m, rad), shape (5,)
+    reaction: Array  # force and moment that hold the inner ring there (N, N m), shape (5,)
+    stiffness: Array  # slopes of the reaction with the displacement, shape (5, 5)
+    rollers: Array  # offsets of each roller: radius, axial position (m), tilt, skew (rad), shape (Z, 4)
+    follow: Array  # how each roller follows the ring, shape (Z, 4, 5)
+    loads: Array  # normal loads of the rollers at the outer ring, the inner ring and the rib (N), shape (Z, 3)
+    energy: float  # potential (J)
 
 
 @dataclass(frozen=True)
 class Balance:
-    """Forces on the shaft at a place. The unknowns are its five coordinates, and the places of the outer rings with a spring.
+    """Forces on the shaft at a place. The unknowns are its five coordinates, and the places of the outer rings with a spring."""
 
-    Attributes
-    ----------
-    place : ndarray, shape (5 + S,)
-        The unknowns (m, rad).
-    answers : tuple of Answer
-        Of the bearings.
-    missing : ndarray, shape (5 + S,)
-        Forces and moments that act on the shaft, and forces on the outer rings with a spring, and are not held (N, N m).
-    slopes : ndarray, shape (5 + S, 5 + S)
-        Slopes of the same with the place, with opposite sign.
-    energy : float
-        Potential of bearings, springs and loads (J).
-    """
-
-    place: Array
-    answers: tuple[Answer, ...]
+    place: Array  # the unknowns (m, rad), shape (5 + S,)
+    answers: tuple[Answer, ...]  # of the bearings
     missing: Array
-    slopes: Array
-    energy: float
+    """Forces and moments that act on the shaft, and forces on the outer rings with a spring, and are not held (N, N
+    m), shape (5 + S,)."""
+    slopes: Array  # slopes of the same with the place, with opposite sign, shape (5 + S, 5 + S)
+    energy: float  # potential of bearings, springs and loads (J)
 
     @property
     def stiffness(self) -> Array:
@@ -98,15 +67,7 @@ class Balance:
 
 
 class ShaftOnBearings:
-    """An assembly at a time, ready to be asked for its forces.
-
-    Parameters
-    ----------
-    assembly : Assembly
-        The assembly.
-    time : float
-        Time of speed, loads and gravity (s).
-    """
+    """An assembly at a time (s), ready to be asked for its forces."""
 
     def __init__(self, assembly: Assembly, time: float) -> None:
         self.assembly = assembly
@@ -126,14 +87,11 @@ class ShaftOnBearings:
             self.loads.append((load.position, np.array([*load.offset, 0.0]), force, moment))
 
     def answer(self, index: int, displacement: Array, near: Answer | None = None) -> Answer:
-        """What a bearing does where its inner ring stands at a displacement (m, rad).
+        """What a bearing does where its inner ring stands at a displacement (m, rad); `CoreLoadError` if its rollers have no
+        equilibrium.
 
-        Its rollers are searched for from where they follow the ring from a place `near`, and else from their places without load.
-
-        Raises
-        ------
-        CoreLoadError
-            If its rollers have no equilibrium there.
+        Its rollers are searched for from where they follow the ring from a place `near`, and else from their places without
+        load.
         """
         if near is not None:
             with contextlib.suppress(_core.CoreLoadError):
@@ -180,23 +138,11 @@ class ShaftOnBearings:
         answers: tuple[Answer, ...] | None = None,
         near: tuple[Answer, ...] | None = None,
     ) -> Balance:
-        """Forces, slopes and potential where the shaft's axis stands at a place.
+        """Forces, slopes and potential where the shaft's axis stands at a place: the unknowns (m, rad), shape (5 + S,), at a
+        position (m).
 
-        Parameters
-        ----------
-        place : ndarray, shape (5 + S,)
-            The unknowns at the reference point (m, rad).
-        reference : float
-            Position of the reference point along the shaft (m).
-        answers : tuple of Answer, optional
-            Of the bearings at this place, if they are known.
-        near : tuple of Answer, optional
-            Of the bearings at a place close by, from where their rollers follow.
-
-        Raises
-        ------
-        CoreLoadError
-            If the rollers of a bearing have no equilibrium there.
+        `answers` are those of the bearings there, if they are known; `near` those at a place close by, from where rollers
+        follow.
         """
         axis, turning = axis_of(place[3:5])
         missing, slopes = np.zeros(place.size), np.zeros((place.size, place.size))
@@ -229,7 +175,7 @@ class ShaftOnBearings:
             lever = np.cross(offset, force) + moment
             missing[3:5] += lever[:2] + arm * np.cross(axis, force)[:2]
             slopes[3:5, 3:5] -= arm * np.cross(turning, force, axisa=0)[:, :2].T
-            energy -= force @ (place[:3] + arm * (axis - _ALONG)) + lever[:2] @ place[3:5]
+            energy -= force @ (place[:3] + arm * (axis - ALONG)) + lever[:2] @ place[3:5]
         return Balance(place, tuple(given), missing, slopes, energy)
 
     def _spring(self, index: int) -> int:
@@ -239,7 +185,7 @@ class ShaftOnBearings:
     def _ring_place(self, index: int, place: Array, arm: float, axis: Array) -> Array:
         one = self.assembly.bearings[index]
         turn3, turn2 = turns_of(one)
-        where = np.concatenate([turn3 * (place[:3] + arm * (axis - _ALONG)), turn2 * place[3:5]])
+        where = np.concatenate([turn3 * (place[:3] + arm * (axis - ALONG)), turn2 * place[3:5]])
         where[2] += one.end_play if one.spring is None else -place[5 + self._spring(index)]
         return where
 
@@ -260,16 +206,3 @@ def ring_slopes(one: ShaftBearing, arm: float, turning: Array, size: int, spring
     if spring >= 0:
         slopes[2, 5 + spring] = -1.0
     return slopes
-
-
-def axis_of(rotation: Array) -> tuple[Array, Array]:
-    """Direction of an axis that a rotation about x and y (rad) turned from z, shape (3,), and its slopes, shape (3, 2)."""
-    tx, ty = rotation
-    angle = math.hypot(tx, ty)
-    sinc = float(np.sinc(angle / math.pi))
-    bend = (math.cos(angle) - sinc) / angle**2 if angle > 1e-4 else -1.0 / 3.0 + angle**2 / 30.0
-    axis = np.array([sinc * ty, -sinc * tx, math.cos(angle)])
-    slopes = np.array(
-        [[bend * tx * ty, sinc + bend * ty**2], [-sinc - bend * tx**2, -bend * tx * ty], [-sinc * tx, -sinc * ty]]
-    )
-    return axis, slopes

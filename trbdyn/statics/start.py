@@ -15,7 +15,7 @@ from trbdyn.model.start import Start
 from trbdyn.statics.cage_start import place_cage
 from trbdyn.statics.core_model import build_model
 from trbdyn.statics.equilibrium import Equilibrium, nominal_angles
-from trbdyn.statics.free_ring import place_ring
+from trbdyn.statics.free_ring import axis_of, put_axis
 from trbdyn.statics.ring_motion import RingMotion, ring_motion
 from trbdyn.statics.state_view import StateView
 
@@ -26,13 +26,7 @@ Array = NDArray[np.float64]
 
 
 def start_state(model: _core.Model, scene: Scene, motion: RingMotion, equilibrium: Equilibrium) -> Array:
-    """The state vector at the start, shape (n_state,).
-
-    Raises
-    ------
-    InputError
-        If a saved state does not fit the scene.
-    """
+    """The state vector at the start, shape (n_state,)."""
     if scene.start.kind == "state":
         vector = np.array(scene.start.state_vector, dtype=np.float64)
         if vector.size != model.n_state:
@@ -58,7 +52,8 @@ def start_state(model: _core.Model, scene: Scene, motion: RingMotion, equilibriu
     if scene.effects.planar:
         state["roller_omega_n"] = 0.0
     if scene.ring_body is not None:
-        place_ring(state, equilibrium.displacement, scene.ring_body.mass_offset)
+        place, turn = equilibrium.displacement[:3], equilibrium.displacement[3:]
+        put_axis(state, place, axis_of(turn)[0], scene.ring_body.mass_offset)
     if scene.effects.bodies == "rollers_and_spacer":
         state["cage_psi"] = float(np.mean(state["roller_psi"]))
     if scene.effects.has_cage:
@@ -88,15 +83,7 @@ def _join_orbits(state: StateView, scene: Scene) -> None:
 
 
 def contacts_at_start(scene: Scene) -> dict[str, Array]:
-    """Every intermediate quantity of every contact at the start; names, shapes and units as in `Simulation.contacts`.
-
-    Raises
-    ------
-    InputError
-        If the scene cannot be used.
-    LoadError
-        If the bearing cannot carry the load.
-    """
+    """Every intermediate quantity of every contact at the start; names, shapes and units as in `Simulation.contacts`."""
     if scene.elastic_cage is not None and scene.elastic_cage.file is not None:
         # contacts of rollers do not need the modes, whose file is not opened for the summary of a result
         start = Start(time=scene.start.time) if scene.start.kind == "state" else scene.start
@@ -104,5 +91,5 @@ def contacts_at_start(scene: Scene) -> dict[str, Array]:
     model = build_model(scene)
     motion, equilibrium = ring_motion(model, scene)
     vector = start_state(model, scene, motion, equilibrium)
-    onlooker = motion.open(model, scene.start.time, vector, {})
+    onlooker = motion.open(model, scene.start.time, vector)
     return onlooker.contacts(scene.start.time, vector)

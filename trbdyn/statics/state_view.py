@@ -13,12 +13,7 @@ Array = NDArray[np.float64]
 class StateView:
     """Parts of a state vector by name, as views: ``view["roller_r"]`` has shape (Z,), ``view["cage_x"]`` shape ().
 
-    Parameters
-    ----------
-    layout : sequence of (str, int, tuple)
-        Name, first entry and shape of each part: `_core.Model.state_layout`, or one of `_core.state_layouts`.
-    vector : ndarray, shape (n_state,)
-        The vector; views write through to it.
+    The layout has name, first entry and shape of each part: `_core.Model.state_layout`, or one of `_core.state_layouts`.
     """
 
     def __init__(self, layout: Sequence[tuple[str, int, tuple[int, ...]]], vector: Array) -> None:
