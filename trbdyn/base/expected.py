@@ -28,22 +28,7 @@ _WAYS: Final = {
 
 
 def expect(field: str, value: Any, *kinds: type) -> None:
-    """Refuse a value that is of none of some kinds.
-
-    Parameters
-    ----------
-    field : str
-        Name of the argument.
-    value : object
-        What was given for it.
-    *kinds : type
-        What it may be.
-
-    Raises
-    ------
-    InputError
-        If it is something else; with the way to the right one where there is one.
-    """
+    """Refuse a value for an argument that is of none of some kinds, with the way to the right one where there is one."""
     if isinstance(value, kinds):
         return
     names = [kind.__name__ for kind in kinds]

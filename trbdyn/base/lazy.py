@@ -13,15 +13,10 @@ from typing import Any
 
 
 def lazy_names(package: str, file: str) -> tuple[list[str], Callable[[str], Any], Callable[[], list[str]]]:
-    """``__all__``, ``__getattr__`` and ``__dir__`` of a package.
+    """``__all__``, ``__getattr__`` and ``__dir__`` of a package, from its ``__name__`` and ``__file__``.
 
     The names are those that its file imports under ``if TYPE_CHECKING``, as ``from module import name as name``: type checkers
     read them there, too.
-
-    Parameters
-    ----------
-    package, file : str
-        ``__name__`` and ``__file__`` of the package.
     """
     blocks = [node for node in ast.parse(Path(file).read_text(encoding="utf-8")).body if isinstance(node, ast.If)]
     places: dict[str, tuple[str, str]] = {}

@@ -29,24 +29,10 @@ OPEN_FILES_MOVE = not hasattr(os, "O_BINARY")
 
 
 class LockedFile:
-    """A file that is locked: no other process, and no other part of this one, can lock it before `close`.
+    """A file that is locked: no other process, and no other part of this one, can lock it before `close`. An OSError (EBUSY) if
+    another one holds the lock; the open file is closed then, as it is with the lock.
 
-    It also stays open, for `stream`, where an open file can be renamed. File systems without locks let it pass.
-
-    Parameters
-    ----------
-    stream : file
-        The open file, which is closed with the lock.
-
-    Attributes
-    ----------
-    stream : file or None
-        The open file, for reading and writing; None where it could not be renamed then.
-
-    Raises
-    ------
-    OSError
-        If another one holds the lock (errno EBUSY); the file is closed then.
+    It also stays open, for `stream`, where an open file can be renamed; elsewhere `stream` is None.
     """
 
     def __init__(self, stream: BinaryIO) -> None:
@@ -94,13 +80,7 @@ class LockedFile:
 
 
 def take_lock(path: Path) -> LockedFile:
-    """Lock a file that is there.
-
-    Raises
-    ------
-    OSError
-        If another one holds the lock (errno EBUSY), or it cannot be opened.
-    """
+    """Lock a file that is there; an OSError (EBUSY) if another one holds the lock."""
     # links are not followed, and what is no file cannot make it wait
     locked = LockedFile(os.fdopen(os.open(path, os.O_RDWR | flags("O_CLOEXEC", "O_NOFOLLOW", "O_NONBLOCK")), "r+b"))
     if not locked.is_at(path):
@@ -110,13 +90,7 @@ def take_lock(path: Path) -> LockedFile:
 
 
 def is_locked(path: Path) -> bool:
-    """Whether another one holds the lock of a file; False where that cannot be found out.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be opened.
-    """
+    """Whether another one holds the lock of a file; False where that cannot be found out."""
     with path.open("rb") as stream:
         try:
             if _FCNTL is not None:

@@ -35,20 +35,7 @@ RESERVED = (".checkpoint", ".checkpoint.previous", ".new")
 
 
 def file_path(value: object, field: str) -> Path:
-    """A path as users give it: a text or path-like that names a file.
-
-    Parameters
-    ----------
-    value : object
-        What the user gave.
-    field : str
-        Name of the argument, for the message.
-
-    Raises
-    ------
-    InputError
-        If it is no path, or names no file.
-    """
+    """A path as users give it: a text or path-like that names a file; `field` is the argument's name in messages."""
     if not isinstance(value, str | os.PathLike):
         raise InputError.of(field, value, "must be the path of a file")
     text = os.fspath(value)
@@ -65,13 +52,7 @@ def file_path(value: object, field: str) -> Path:
 
 
 def folder_path(value: object, field: str) -> Path:
-    """A path as users give it: a text or path-like that names a folder.
-
-    Raises
-    ------
-    InputError
-        If it is no path, or empty.
-    """
+    """A path as users give it: a text or path-like that names a folder."""
     text = os.fspath(value) if isinstance(value, str | os.PathLike) else None
     if not isinstance(text, str) or not text or "\0" in text or not _is_encodable(text):
         raise InputError.of(field, value, "must be the path of a folder, without null characters")
@@ -95,27 +76,11 @@ def output_path(
     endings: Collection[str] = (),
     reads: Iterable[str | os.PathLike[str]] = (),
 ) -> Path:
-    """Where a file shall be written. A symbolic link is followed: its target is written.
+    """Where a file shall be written: with one of the `endings`, by default any, and none of the files that are read to make it
+    (`reads`), which are never replaced. A symbolic link is followed: its target is written.
 
-    Parameters
-    ----------
-    value : object
-        What the user gave.
-    overwrite : bool
-        Whether a file that is there may be replaced.
-    field : str
-        Name of the argument, for the message.
-    endings : collection of str
-        Endings that the file may have; by default any.
-    reads : iterable of path-like
-        Files that are read to make this one: none of them is ever replaced.
-
-    Raises
-    ------
-    InputError
-        If it names no file, one that is read, or has an ending that is not allowed.
-    FileError
-        If there is no folder for it, or something lies there that must not be replaced.
+    An InputError if the path cannot be used, a FileError if there is no folder for it, or something lies there that must not be
+    replaced.
     """
     path = file_path(value, field)
     if path.is_symlink():
@@ -166,25 +131,13 @@ def draft_of(path: Path, run_id: str) -> Path:
 
 
 def create(path: Path) -> BinaryIO:
-    """A new file, open for reading and writing; nothing that has its name already is opened or followed.
-
-    Raises
-    ------
-    OSError
-        If something has that name (errno EEXIST), or it cannot be made.
-    """
+    """A new file, open for reading and writing; nothing that has its name already is opened or followed (EEXIST)."""
     new = os.O_RDWR | os.O_CREAT | os.O_EXCL | flags("O_NOFOLLOW", "O_CLOEXEC")
     return os.fdopen(os.open(path, new, 0o666), "r+b")
 
 
 def create_draft(path: Path, run_id: str) -> tuple[Path, LockedFile]:
-    """The draft of a run's file, and its lock. Drafts of this file that killed processes have left are removed first.
-
-    Raises
-    ------
-    OSError
-        If it cannot be made.
-    """
+    """The draft of a run's file, and its lock. Drafts of this file that killed processes have left are removed first."""
     remove_drafts(path)
     draft = draft_of(path, run_id)
     with suppress(FileNotFoundError):
@@ -203,13 +156,7 @@ def remove_drafts(path: Path) -> None:
 
 
 def put_in_place(draft: Path, path: Path, *, replace: bool) -> None:
-    """Give a draft its name, in one step.
-
-    Raises
-    ------
-    OSError
-        If it cannot; without `replace`, also if something has the name already (errno EEXIST).
-    """
+    """Give a draft its name, in one step; without `replace` not if something has the name already (EEXIST)."""
     if replace:
         os.replace(draft, path)
         return
@@ -238,28 +185,9 @@ def write_whole(
     endings: Collection[str] = (),
     reads: Iterable[str | os.PathLike[str]] = (),
 ) -> Path:
-    """Write a file that is either the old one or the whole new one. Whatever trbdyn writes at once is written by this function.
-
-    Parameters
-    ----------
-    path : object
-        What the user gave.
-    content : bytes or str
-        What to write; text as UTF-8.
-    overwrite, field, endings, reads
-        As in `output_path`.
-
-    Returns
-    -------
-    Path
-        The file, by the name that was given.
-
-    Raises
-    ------
-    InputError
-        If the path cannot be used.
-    FileError
-        If it is there and shall not be replaced, or cannot be written; what was there is unchanged.
+    """Write a file that is either the old one or the whole new one, and give its name back. Whatever trbdyn writes at once is
+    written by this function; text as UTF-8. Arguments and errors are those of `output_path`; what was there is unchanged after an
+    error.
     """
     target = output_path(path, overwrite=overwrite, field=field, endings=endings, reads=reads)
     try:
@@ -279,13 +207,7 @@ def write_whole(
 
 
 def fill(draft: Path, content: bytes) -> None:
-    """Write the content of a draft, and have the system put it on the disk.
-
-    Raises
-    ------
-    OSError
-        If it cannot be written.
-    """
+    """Write the content of a draft, and have the system put it on the disk."""
     with draft.open("r+b") as stream:
         stream.write(content)
         stream.flush()
@@ -293,14 +215,8 @@ def fill(draft: Path, content: bytes) -> None:
 
 
 def read_whole(path: Path, largest: int) -> bytes:
-    """The content of a file, however it is named: a pipe that nobody writes to is empty, a device without an end too long.
-
-    Raises
-    ------
-    OSError
-        If it cannot be read.
-    ValueError
-        If it is longer than `largest` bytes.
+    """The content of a file, however it is named: a pipe that nobody writes to is empty, a device without an end too long. A
+    ValueError if it is longer than `largest` bytes.
     """
     with os.fdopen(os.open(path, os.O_RDONLY | flags("O_CLOEXEC", "O_NONBLOCK")), "rb") as stream:
         if flags("O_NONBLOCK"):
@@ -312,26 +228,12 @@ def read_whole(path: Path, largest: int) -> bytes:
 
 
 def read_text(path: Path, largest: int = 16 << 20) -> str:
-    """The text of a small file, UTF-8.
-
-    Raises
-    ------
-    OSError
-        If it cannot be read.
-    ValueError
-        If it is longer than `largest` bytes, or no text.
-    """
+    """The text of a small file, UTF-8; a ValueError if it is longer than `largest` bytes, or no text."""
     return read_whole(path, largest).decode("utf-8")
 
 
 def set_aside(path: Path) -> Path:
-    """Move a file that belongs to nobody known to a name that is free: ``NAME.damaged``, ``NAME.damaged1`` and so on.
-
-    Raises
-    ------
-    OSError
-        If it cannot be moved.
-    """
+    """Move a file that belongs to nobody known to a name that is free: ``NAME.damaged``, ``NAME.damaged1`` and so on."""
     for number in range(1000):
         other = path.with_name(f"{path.name}.damaged{number or ''}")
         try:
@@ -343,13 +245,7 @@ def set_aside(path: Path) -> Path:
 
 
 def copy_content(stream: BinaryIO, path: Path) -> None:
-    """Write the content of an open file to a new file of another name.
-
-    Raises
-    ------
-    OSError
-        If something has that name, or it cannot be written.
-    """
+    """Write the content of an open file to a new file of another name."""
     with create(path) as target:
         stream.seek(0)
         shutil.copyfileobj(stream, target, 1 << 22)
@@ -358,13 +254,7 @@ def copy_content(stream: BinaryIO, path: Path) -> None:
 
 
 def digest_of(path: str) -> str:
-    """SHA-256 of a file, as 64 hexadecimal digits.
-
-    Raises
-    ------
-    FileError
-        If it cannot be read.
-    """
+    """SHA-256 of a file, as 64 hexadecimal digits."""
     try:
         return hashlib.sha256(read_whole(file_path(path, "file"), LARGEST_HASHED)).hexdigest()
     except ValueError as error:

@@ -18,13 +18,7 @@ class SecondThread:
         self._error: BaseException | None = None
 
     def start(self, work: Callable[[], object]) -> None:
-        """Begin a piece of work; waits for the one before, and raises its error if it had one.
-
-        Parameters
-        ----------
-        work : callable
-            Called without arguments; what it returns is not kept.
-        """
+        """Begin a piece of work; waits for the one before, and raises its error if it had one."""
         self.wait()
 
         def do() -> None:

@@ -16,15 +16,7 @@ DATA: Final = Path(__file__).parent.parent / "data"
 
 @dataclass(frozen=True)
 class Shipped:
-    """TOML files by their names.
-
-    Attributes
-    ----------
-    kind, kinds : str
-        What a file describes, and many of them.
-    folders : tuple of Path
-        Where they lie.
-    """
+    """TOML files by their names: what a file describes, as one and as many, and the folders where they lie."""
 
     kind: str
     kinds: str
@@ -39,26 +31,14 @@ class Shipped:
         return tuple(self.paths())
 
     def find(self, name: str) -> Path:
-        """The file of a name, with or without ``.toml``.
-
-        Raises
-        ------
-        InputError
-            If there is none.
-        """
+        """The file of a name, with or without ``.toml``."""
         stem, paths = name.removesuffix(".toml"), self.paths()
         if stem not in paths:
             raise InputError.of(self.kind, name, unknown_name(stem, paths))
         return paths[stem]
 
     def file(self, path: str | os.PathLike[str]) -> Path:
-        """The file of a user; where there is none of this name, the one that ships with the package.
-
-        Raises
-        ------
-        InputError
-            If it is no path.
-        """
+        """The file of a user; where there is none of this name, the one that ships with the package."""
         file = file_path(path, self.kind)
         ships = not file.exists() and str(path).removesuffix(".toml") in self.names()
         return self.find(str(path)) if ships else file

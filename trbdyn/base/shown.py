@@ -34,37 +34,17 @@ _UNITS: Final = "m|N|1|rad|rpm|Pa|kg|deg|C|s|m/s2|N m|kg/m3|kg m2|kg m|1/Pa|1/K|
 
 @dataclass(frozen=True)
 class Shown:
-    """What an object shows.
+    """What an object shows."""
 
-    Attributes
-    ----------
-    title : str
-        One line: what it is.
-    rows : tuple of tuple of str
-        The table; a row may be shorter than `head`.
-    head : tuple of str
-        Names of the columns; a column "value" is set as numbers are.
-    notes : tuple of str
-        Sentences below the table.
-    parts : tuple of Shown
-        Further tables; a notebook folds them away, a terminal leaves them out.
-    """
-
-    title: str = ""
-    rows: tuple[tuple[str, ...], ...] = ()
-    head: tuple[str, ...] = HEAD
-    notes: tuple[str, ...] = ()
-    parts: tuple[Shown, ...] = ()
+    title: str = ""  # one line: what it is
+    rows: tuple[tuple[str, ...], ...] = ()  # the table; a row may be shorter than `head`
+    head: tuple[str, ...] = HEAD  # of the columns; a column "value" is set as numbers are
+    notes: tuple[str, ...] = ()  # sentences below the table
+    parts: tuple[Shown, ...] = ()  # further tables; a notebook folds them away, a terminal leaves them out
 
     def text(self, columns: int | None = None, *, names: bool = False) -> str:
-        """The table for a terminal.
-
-        Parameters
-        ----------
-        columns : int, optional
-            Only so many of the columns; a unit stands beside its value.
-        names : bool
-            Put the names of the columns above them.
+        """The table for a terminal, or only so many of its columns; a unit stands beside its value. `names` puts those of the
+        columns above them.
         """
         rows = (self.head, *self.rows) if names else self.rows
         cells = [_beside(row[:columns], self.head) for row in rows]
@@ -176,16 +156,8 @@ def described_fields(kind: type) -> Mapping[str, tuple[str, str]]:
 
 
 def field_rows(model: Any, marks: Mapping[str, str] | None = None, prefix: str = "") -> Iterator[tuple[str, ...]]:
-    """Rows of a model and of the models in it: path, value, unit, meaning with a mark such as 'assumed'.
-
-    Parameters
-    ----------
-    model : Model
-        An input model.
-    marks : mapping of str to str, optional
-        What stands behind the meaning of some paths.
-    prefix : str
-        What the paths begin with.
+    """Rows of a model and of the models in it: path, which begins with `prefix`, value, unit, and meaning with the mark that
+    `marks` has for the path, such as 'assumed'.
     """
     kind: type = type(model)
     texts = field_texts(kind)

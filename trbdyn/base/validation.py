@@ -59,13 +59,7 @@ def unit(symbol: str, **bounds: float) -> Any:
 
 
 def as_number(value: object) -> float:
-    """A real number as float.
-
-    Raises
-    ------
-    ValueError
-        If the value is no real number; True and False are none.
-    """
+    """A real number as float; a ValueError for anything else, True and False among them."""
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise ValueError("must be a number")
     try:
@@ -75,13 +69,7 @@ def as_number(value: object) -> float:
 
 
 def as_whole_number(value: object) -> int:
-    """A whole number as int.
-
-    Raises
-    ------
-    ValueError
-        If the value is no whole number; True, False and floats are none.
-    """
+    """A whole number as int; a ValueError for anything else, True, False and floats among them."""
     if isinstance(value, bool) or not isinstance(value, numbers.Integral):
         raise ValueError("must be a whole number")
     whole = int(value)
@@ -91,13 +79,7 @@ def as_whole_number(value: object) -> int:
 
 
 def number_of(name: str, value: object) -> float:
-    """An argument that must be a real number, as float; it may be infinite or not a number.
-
-    Raises
-    ------
-    InputError
-        If it is none.
-    """
+    """An argument that must be a real number, as float; it may be infinite or not a number."""
     try:
         return as_number(value)
     except ValueError as error:
@@ -228,13 +210,7 @@ class Model(Displayed, BaseModel, metaclass=_Listed):
 
     @classmethod
     def model_validate(cls, obj: Any, **options: Any) -> Self:
-        """A model from an instance or a mapping of its fields.
-
-        Raises
-        ------
-        InputError
-            If anything is wrong with the values.
-        """
+        """A model from an instance or a mapping of its fields, or an `InputError` that says what is wrong with the values."""
         try:
             return super().model_validate(obj, **options)
         except ValidationError as error:

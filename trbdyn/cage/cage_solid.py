@@ -144,13 +144,7 @@ def cage_solid(bearing: Bearing, *, fineness: int = 1, cracked_bars: Iterable[in
 
 
 def elasticity(bearing: Bearing) -> Elasticity:
-    """What the cage of a bearing is made of.
-
-    Raises
-    ------
-    InputError
-        If its material has no density.
-    """
+    """What the cage of a bearing is made of; its material must have a density."""
     material = bearing.cage_material
     if material.density is None:
         raise InputError.of(("bearing", "cage", "material", "density"), None, "must be given (kg/m3)")

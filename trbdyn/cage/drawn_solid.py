@@ -36,21 +36,8 @@ REPEATS: Final = 20
 
 
 def solid_of_cage(bearing: Bearing, *, fineness: float = 1, cracked_bars: Iterable[int] = ()) -> CageSolid:
-    """The finite-element model of a bearing's cage, from its drawing where it has one, or else from its body.
-
-    Parameters
-    ----------
-    bearing : Bearing
-        A bearing whose cage has a drawing or a body, and a material with density.
-    fineness : float
-        Over which edges of the coarsest mesh are divided; a whole number from 1 to 3 for a body.
-    cracked_bars : iterable of int
-        Of a body: bars that are cracked through at their root at the small end.
-
-    Raises
-    ------
-    InputError
-        If the cage or its material lacks something, or a number is not allowed.
+    """The finite-element model of a bearing's cage, from its drawing where it has one, or else from its body, with arguments and
+    errors of `drawn_solid` and `cage_solid`.
     """
     if bearing.cage.drawing is not None:
         return drawn_solid(bearing, fineness=fineness)
@@ -58,27 +45,12 @@ def solid_of_cage(bearing: Bearing, *, fineness: float = 1, cracked_bars: Iterab
 
 
 def drawn_solid(bearing: Bearing, *, fineness: float = 1.0) -> CageSolid:
-    """The finite-element model of a cage that was read from a drawing.
+    """The finite-element model of a cage that comes from `Cage.from_step`, with the edges of the plain mesh divided by
+    `fineness`. An STL file is refused, as its triangles are not the solid's real surface, and a drawing that has changed.
 
     Points of stress lie at the corners of the pockets: for each bar, end, side and surface the node of the drawing's surface
     where the largest principal stress under a push on any face is largest, in the direction of that principal stress. So the
     notch is in it, as drawn.
-
-    Parameters
-    ----------
-    bearing : Bearing
-        A bearing whose cage comes from `Cage.from_step`, and has a material with density.
-    fineness : float
-        Number by which the edges of the plain mesh are divided.
-
-    Raises
-    ------
-    InputError
-        If the drawing has changed, or is an STL file, whose triangles are not the solid's real surface.
-    FileError
-        If it cannot be read or meshed.
-    ImportError
-        If the extra ``trbdyn[cad]`` is not installed.
     """
     drawing = bearing.cage.drawing
     assert drawing is not None  # callers have looked
@@ -114,16 +86,8 @@ def drawn_solid(bearing: Bearing, *, fineness: float = 1.0) -> CageSolid:
 
 
 def tetrahedra(drawing: CageDrawing, size: float, fineness: float) -> tuple[FloatArray, IntArray]:
-    """Nodes in the cage's frame (m), and second-order tetrahedra in the order of Gmsh, whose edges follow the drawn surfaces.
-
-    Parameters
-    ----------
-    drawing : CageDrawing
-        The drawing.
-    size : float
-        Diameter of the rollers (m).
-    fineness : float
-        Number by which edges are divided.
+    """Nodes in the cage's frame (m), and second-order tetrahedra in the order of Gmsh, whose edges follow the drawn surfaces;
+    `size` is the diameter of the rollers (m), and edges are divided by `fineness`.
     """
     with gmsh_model() as gmsh:
         try:

@@ -30,34 +30,16 @@ SURFACES: Final = ("outer", "inner")
 
 @dataclass(frozen=True, eq=False)
 class Section:
-    """A rectangular cross-section.
+    """A rectangular cross-section."""
 
-    Attributes
-    ----------
-    part : int
-        The part of the model whose elements act on it.
-    nodes : ndarray
-        Corners of elements of the mesh among which those of the section are.
-    centre : ndarray, shape (3,)
-        Its middle (m).
-    axes : ndarray, shape (3, 3)
-        Unit vectors along the bar or rim, across it, and through the wall towards the axis, as rows.
-    sign : float
-        1 if the part's outward normal points along the first axis, else -1.
-    width, thickness : float
-        Lengths of its sides across and through (m).
-    points : tuple of (str, float, float)
-        Its points at corners of pockets: name, and place across and through over width and thickness.
-    """
-
-    part: int
-    nodes: IntArray
-    centre: FloatArray
-    axes: FloatArray
-    sign: float
-    width: float
-    thickness: float
-    points: tuple[tuple[str, float, float], ...]
+    part: int  # the part of the model whose elements act on it
+    nodes: IntArray  # corners of elements of the mesh among which those of the section are
+    centre: FloatArray  # m
+    axes: FloatArray  # unit vectors along the bar or rim, across it, and through the wall towards the axis, as rows
+    sign: float  # 1 if the part's outward normal points along the first axis, else -1
+    width: float  # of its side across (m)
+    thickness: float  # of its side through the wall (m)
+    points: tuple[tuple[str, float, float], ...]  # at corners of pockets: name, place across and through (1)
 
 
 def bar_sections(wall: Wall, mesh: WallMesh) -> Iterator[Section]:
@@ -114,16 +96,8 @@ def rim_sections(wall: Wall, mesh: WallMesh) -> Iterator[Section]:
 
 
 def forces_on(solid: Solid, part: IntArray, sections: Iterable[Section]) -> Any:
-    """Forces (N) and moments (N m) on sections from the displacements, in their axes, sparse, shape (6 S, 3 N).
-
-    Parameters
-    ----------
-    solid : Solid
-        The model.
-    part : ndarray, shape (E,)
-        Part of each element, -1 for none.
-    sections : iterable of Section
-        S sections.
+    """Forces (N) and moments (N m) on sections from the displacements, in their axes, sparse, shape (6 S, 3 N); `part` has the
+    part of each element, -1 for none.
     """
     import skfem
     from scipy.sparse import lil_array, vstack

@@ -113,13 +113,8 @@ def mesh_difference(bearing: Bearing, elastic: ElasticCage) -> tuple[float, floa
 
 
 def displacements(scene: Scene, amplitude: FloatArray) -> tuple[CageSolid, FloatArray]:
-    """The finite-element model of a scene's cage, and the displacements of its nodes (m), shape (N, 3), at amplitudes (m)
-    of its modes.
-
-    Raises
-    ------
-    InputError
-        If the scene's cage is rigid, or its modes come from a file.
+    """The finite-element model of a scene's cage, and the displacements of its nodes (m), shape (N, 3), at amplitudes (m) of its
+    modes. A cage that is rigid, or whose modes come from a file, is refused.
     """
     modes = cage_modes(scene)
     elastic = scene.elastic_cage
@@ -136,11 +131,6 @@ def displacements(scene: Scene, amplitude: FloatArray) -> tuple[CageSolid, Float
 def mode_rows(scene: Scene) -> FloatArray:
     """Modes as the core takes them, shape (M, C): frequency (rad/s), damping ratio, modal mass (kg), then the shapes at each slot
     of each pocket and the Coriolis forces; no rows for a rigid cage.
-
-    Raises
-    ------
-    InputError
-        If the modes do not know a face of a pocket.
     """
     if scene.elastic_cage is None:
         return np.zeros((0, 1))
@@ -151,13 +141,7 @@ def mode_rows(scene: Scene) -> FloatArray:
 
 
 def shapes_by_slot(scene: Scene) -> FloatArray:
-    """Shapes of the modes at the faces of the bearing's pockets, shape (M, Z, S, 6); the faces are known by their names.
-
-    Raises
-    ------
-    InputError
-        If the modes do not know a face of a pocket.
-    """
+    """Shapes of the modes at the faces of the bearing's pockets, shape (M, Z, S, 6); the faces are known by their names."""
     modes, faces = cage_modes(scene), every_surface(scene.bearing)
     places = {key: place for place, key in enumerate(zip(modes.face_pocket, modes.face_name, strict=True))}
     slots = 1 + max(face.slot for _, face in faces)

@@ -35,13 +35,7 @@ PRECISE: Final = 1e-7
 
 @dataclass(frozen=True)
 class Elasticity:
-    """What a solid is made of.
-
-    Attributes
-    ----------
-    youngs_modulus, poisson_ratio, density : float
-        Pa, 1, kg/m3.
-    """
+    """What a solid is made of (Pa, 1, kg/m3)."""
 
     youngs_modulus: float
     poisson_ratio: float
@@ -243,21 +237,11 @@ def crossed(arm: FloatArray) -> FloatArray:
 
 def told_apart(frequencies: FloatArray, shapes: FloatArray) -> FloatArray:
     """The same modes, with those of equal frequency turned into each other, and with signs, so that every machine has the same.
+    Frequencies rise, shapes, shape (3 N, M), have unit modal mass.
 
     A solver gives any basis of the motions with one frequency, another one on another processor. Here a fixed draw of loads picks
-    it: the second mode does not answer to the first load, the third not to the first two, and each answers to its own with
-    a positive amplitude.
-
-    Parameters
-    ----------
-    frequencies : ndarray, shape (M,)
-        Natural frequencies, ascending (Hz).
-    shapes : ndarray, shape (3 N, M)
-        Mode shapes with unit modal mass.
-
-    Returns
-    -------
-    ndarray, shape (3 N, M)
+    it: the second mode does not answer to the first load, the third not to the first two, and each answers to its own with a
+    positive amplitude.
     """
     loads = np.random.default_rng(1).standard_normal(shapes.shape[::-1])
     found, first = shapes.copy(), 0

@@ -29,44 +29,21 @@ CORNERS = np.array([(0, 0, 0), (0, 0, 1), (0, 1, 0), (1, 0, 0), (0, 1, 1), (1, 0
 
 @dataclass(frozen=True)
 class WallMesh:
-    """Corners and elements of a wall.
+    """Corners and elements of a wall. Bar k lies behind pocket k in the direction of rotation."""
 
-    Attributes
-    ----------
-    corners : ndarray, shape (V, 3)
-        Places in the cage's frame: origin on the axis in the roller-centre plane, x through the middle of pocket 0 (m).
-    elements : ndarray, shape (E, 8)
-        Corners of the hexahedra, in the order of scikit-fem.
-    bar : ndarray, shape (E,)
-        Bar of each element; -1 in a rim. Bar k lies behind pocket k in the direction of rotation.
-    rim : ndarray, shape (E,)
-        Half of a rim before a window that an element is of: 4 k + 2 (large rim) + (the half at the leading bar) of pocket k, else
-        -1. The half reaches to the middle of the window's rounded corner.
-    roots : tuple of ndarray
-        Corners of the bars' cross-sections at the small, and at the large ends of the windows.
-    rim_cuts : ndarray
-        Corners of the rims' cross-sections through the middles of the windows' rounded corners.
-    """
-
-    corners: FloatArray
-    elements: IntArray
-    bar: IntArray
+    corners: FloatArray  # in the cage's frame (m), shape (V, 3): x through the middle of pocket 0
+    elements: IntArray  # corners of the hexahedra, in the order of scikit-fem, shape (E, 8)
+    bar: IntArray  # of each element; -1 in a rim
     rim: IntArray
-    roots: tuple[IntArray, IntArray]
-    rim_cuts: IntArray
+    """Half of a rim before a window that an element is of, up to the middle of the window's rounded corner: 4 k + 2 (large rim)
+    + (the half at the leading bar) of pocket k, else -1."""
+    roots: tuple[IntArray, IntArray]  # corners of the bars' sections at the windows' small and large ends
+    rim_cuts: IntArray  # corners of the rims' sections through the middles of the windows' rounded corners
 
 
 def wall_mesh(wall: Wall, *, fineness: int = 1, cracked_bars: frozenset[int] = frozenset()) -> WallMesh:
-    """The mesh of a wall.
-
-    Parameters
-    ----------
-    wall : Wall
-        The wall.
-    fineness : int
-        Into how many parts each edge of the coarsest mesh is divided.
-    cracked_bars : frozenset of int
-        Bars that are parted from the rim at the small ends.
+    """The mesh of a wall: each edge of the coarsest mesh is divided into `fineness` parts, and cracked bars are parted from the
+    rim at the small ends.
     """
     levels = _levels(wall, fineness)
     ends = [_corner(wall, end, levels, fineness) for end in (0, 1)]

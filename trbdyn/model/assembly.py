@@ -471,11 +471,5 @@ def assembly_of(subject: object) -> Assembly | None:
 
 
 def subject_from_dict(values: Mapping[str, Any]) -> Subject:
-    """The scene or the assembly that `to_dict` has described.
-
-    Raises
-    ------
-    InputError
-        If a value is not allowed.
-    """
+    """The scene or the assembly that `to_dict` has described."""
     return (Assembly if "shaft" in values else Scene).from_dict(values)

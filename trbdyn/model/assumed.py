@@ -97,19 +97,10 @@ def _small_end_radius(given: Mapping[str, float]) -> float:
 
 
 def scaled(size: Mapping[str, float]) -> dict[str, dict[str, float]]:
-    """Numbers that belong to a bearing of this size.
-
-    Parameters
-    ----------
-    size : mapping of str to float
-        diameter, effective_length, pitch_diameter (m), cup_half_angle_deg (deg); as far as they are given total_length
-        (m), contact_height (m), the cage's mass (kg), the land's clearance (m), and the densities of the materials of rollers and
-        cage (kg/m3; else that of steel).
-
-    Returns
-    -------
-    dict of str to dict of str to float
-        By section: 'roller', 'roller.profile', 'ribs', 'cage', 'land'.
+    """Numbers that belong to a bearing of a size, by section: 'roller', 'roller.profile', 'ribs', 'cage', 'land'. The size has
+    diameter, effective_length, pitch_diameter (m), cup_half_angle_deg (deg), and as far as they are given total_length (m),
+    contact_height (m), the cage's mass (kg), the land's clearance (m), and the densities of the materials of rollers and cage
+    (kg/m3; else that of steel).
     """
     across, along = size["diameter"] / RIG["diameter"], size["effective_length"] / RIG["effective_length"]
     pitch = size["pitch_diameter"] / RIG["pitch_diameter"]
@@ -183,22 +174,10 @@ def cage_inertias(mass: float, pitch: float, across: float, along: float) -> dic
 
 
 def with_assumed(values: Mapping[str, Any], kinds: Mapping[str, type[Model]]) -> Values:
-    """Fields of a bearing, its sections made whole with assumed numbers.
+    """Fields of a bearing, its sections made whole with assumed numbers; `kinds` has the model of each section by its path.
 
-    A list ``assumed`` among the fields, as `Bearing.to_dict` writes it, says which of the numbers were not given: they
-    stay as they are, so that a result keeps what it was made with.
-
-    Parameters
-    ----------
-    values : mapping
-        Fields of a bearing.
-    kinds : mapping of str to type
-        Model of each section, by its path: 'roller', 'roller.profile', 'ribs', 'cage', 'material', 'roughness', 'land'.
-
-    Raises
-    ------
-    InputError
-        If a section is wrong.
+    A list ``assumed`` among the fields, as `Bearing.to_dict` writes it, says which of the numbers were not given: they stay as
+    they are, so that a result keeps what it was made with.
     """
     found = dict(values)
     kept = found.pop("assumed", ())

@@ -414,12 +414,7 @@ def check_boundary(
     bearing: Bearing, *, bore: float | None, outside: float | None, width: float | None, path: Path = ()
 ) -> None:
     """Refuse boundary dimensions (m) that a bearing cannot have: rollers and raceways lie between them, and those that it has are
-    its own. What is None is not looked at.
-
-    Raises
-    ------
-    InputError
-        With the field and what is allowed; its path begins with `path`.
+    its own. What is None is not looked at; the path of an error begins with `path`.
     """
     geometry = bearing.geometry
     length = bearing.roller.effective_length * math.cos(geometry.roller_axis_angle)

@@ -75,56 +75,26 @@ class CageBody(Model):
 
 @dataclass(frozen=True)
 class Wall:
-    """A cage's wall in numbers: lengths in m from the roller's mid length (a) and axis (n), angles in rad.
-
-    Attributes
-    ----------
-    n_pockets : int
-        Number of windows.
-    radius : float
-        Radius of the pitch circle at the rollers' mid length (m).
-    angle : float
-        Angle of the cone (rad).
-    height : float
-        n of the middle surface (m).
-    thickness, small_thickness, large_thickness : float
-        Thicknesses of bars, rim at the small ends, rim at the large ends (m).
-    small_edge, large_edge : float
-        a of the windows' ends (m).
-    small_width, large_width : float
-        Widths of the rims (m).
-    normal : ndarray, shape (3,)
-        Normal of the leading bar's face in the axes radial, circumferential, axial.
-    distance : float
-        Distance of that plane along its normal from the point on the axis in the roller-centre plane (m).
-    corner_radius : float
-        Radius of the windows' corners (m).
-    """
+    """A cage's wall in numbers: lengths from the roller's mid length (a) and axis (n)."""
 
     n_pockets: int
-    radius: float
-    angle: float
-    height: float
-    thickness: float
-    small_thickness: float
-    large_thickness: float
-    small_edge: float
-    large_edge: float
-    small_width: float
-    large_width: float
-    normal: FloatArray
-    distance: float
-    corner_radius: float
+    radius: float  # of the pitch circle at the rollers' mid length (m)
+    angle: float  # of the cone (rad)
+    height: float  # n of the middle surface (m)
+    thickness: float  # of the bars (m)
+    small_thickness: float  # of the rim at the small ends (m)
+    large_thickness: float  # of the rim at the large ends (m)
+    small_edge: float  # a of the windows' ends at the rollers' small ends (m)
+    large_edge: float  # a of the windows' other ends (m)
+    small_width: float  # of the rim at the small ends (m)
+    large_width: float  # of the rim at the large ends (m)
+    normal: FloatArray  # of the leading bar's face in the axes radial, circumferential, axial, shape (3,)
+    distance: float  # of that plane along its normal from the point on the axis in the roller-centre plane (m)
+    corner_radius: float  # of the windows' corners (m)
 
     @classmethod
     def of(cls, bearing: Bearing, body: CageBody) -> Wall:
-        """The wall of a bearing's cage.
-
-        Raises
-        ------
-        InputError
-            If it has no room between the raceways, or windows leave no bar.
-        """
+        """The wall of a bearing's cage; refused where it has no room between the raceways, or windows leave no bar."""
         cage, geometry, pocket = bearing.cage, bearing.geometry, default_pocket(bearing)
         height = 0.5 * (cage.wall_inner + cage.wall_outer) if body.height is None else body.height
         face = pocket.face("leading_bar")
@@ -200,23 +170,13 @@ class Wall:
 
 @dataclass(frozen=True)
 class CageMass:
-    """What a cage weighs.
+    """What a cage weighs."""
 
-    Attributes
-    ----------
-    mass, rims : float
-        Mass of the cage, and of its two rims alone (kg).
-    offset : float
-        Centre of mass above the roller-centre plane, along the axis (m).
-    inertia_axial, inertia_transverse : float
-        Moments of inertia about the axis, and about a transverse axis through the centre of mass (kg m2).
-    """
-
-    mass: float
-    rims: float
-    offset: float
-    inertia_axial: float
-    inertia_transverse: float
+    mass: float  # kg
+    rims: float  # of its two rims alone (kg)
+    offset: float  # of the centre of mass above the roller-centre plane, along the axis (m)
+    inertia_axial: float  # about the axis (kg m2)
+    inertia_transverse: float  # about a transverse axis through the centre of mass (kg m2)
 
 
 def cage_mass(wall: Wall, density: float) -> CageMass:

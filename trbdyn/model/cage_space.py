@@ -33,26 +33,14 @@ LARGEST_OFFSET: Final = 1.0
 
 @dataclass(frozen=True)
 class CageSpace:
-    """Where a cage can be.
+    """Where a cage can be: a ring."""
 
-    Attributes
-    ----------
-    inner, outer : float
-        Radii of the ring (m).
-    half_width : float
-        Half of its width (m).
-    near, far : float
-        Between these radii of gyration lie usual cages (m).
-    volume : float
-        Volume of the ring without the rollers (m3).
-    """
-
-    inner: float
-    outer: float
-    half_width: float
-    near: float
-    far: float
-    volume: float
+    inner: float  # radius of the ring (m)
+    outer: float  # radius of the ring (m)
+    half_width: float  # of the ring (m)
+    near: float  # least radius of gyration of usual cages (m)
+    far: float  # largest radius of gyration of usual cages (m)
+    volume: float  # of the ring without the rollers (m3)
 
     @classmethod
     def of(cls, bearing: Bearing) -> CageSpace:

@@ -15,22 +15,12 @@ from trbdyn.model.ratings import rating_iso76, rating_iso281
 
 @dataclass(frozen=True)
 class Usual:
-    """A ratio that catalogues do not tell: its usual value, how far real bearings scatter, and between what it must lie.
-
-    Attributes
-    ----------
-    value : float
-        Usual value (1).
-    spread : float
-        Standard deviation of its logarithm among real bearings (1).
-    low, high : float
-        Band: bounds of the estimate (1).
-    """
+    """A ratio that catalogues do not tell: its usual value, how far real bearings scatter, and between what it must lie (1)."""
 
     value: float
-    spread: float
-    low: float
-    high: float
+    spread: float  # standard deviation of its logarithm among real bearings
+    low: float  # lower bound of the estimate
+    high: float  # upper bound of the estimate
 
     def at(self, multiplier: float, weight: float) -> float:
         """The ratio where all of them give way together by `multiplier`; `weight` is its exponent in C."""

@@ -16,28 +16,14 @@ from trbdyn import _core
 
 @dataclass(frozen=True)
 class Parameter:
-    """A row of the core's table.
-
-    Attributes
-    ----------
-    name : str
-        Name of the parameter.
-    unit : str
-        SI unit; ``"count"`` and ``"choice"`` stand for whole numbers.
-    lower, upper : float
-        Smallest and largest allowed value.
-    text : str
-        What it is.
-    part : str
-        Whose it is: of the bearing, a roller, a rib, the cage and so on.
-    """
+    """A row of the core's table."""
 
     name: str
-    unit: str
+    unit: str  # SI; "count" and "choice" stand for whole numbers
     lower: float
     upper: float
     text: str
-    part: str
+    part: str  # whose it is: of the bearing, a roller, a rib, the cage and so on
 
 
 PARAMETERS: Final = {row[0]: Parameter(*row) for row in _core.parameter_table()}
@@ -45,19 +31,8 @@ PARAMETERS: Final = {row[0]: Parameter(*row) for row in _core.parameter_table()}
 
 
 def parameter(name: str, **bounds: float) -> Any:
-    """Metadata of a field that is a parameter of the core: its unit, range and text.
-
-    Parameters
-    ----------
-    name : str
-        Name of the parameter in the core's table.
-    **bounds : float
-        Bounds that are stricter than the table's: ``gt``, ``ge``, ``lt`` or ``le``.
-
-    Raises
-    ------
-    KeyError
-        If the core has no such parameter: package and core do not belong together.
+    """Metadata of a field that is a parameter of the core: its unit, range and text. Bounds (``gt``, ``ge``, ``lt``, ``le``) are
+    those that are stricter than the table's.
     """
     row = PARAMETERS[name]
     whole = row.unit in ("count", "choice")
@@ -72,25 +47,13 @@ def parameter(name: str, **bounds: float) -> Any:
 
 @dataclass(frozen=True)
 class Setting:
-    """A row of the core's table of settings.
-
-    Attributes
-    ----------
-    name : str
-        Name of the setting.
-    default : float
-        What it is unless something else is asked for.
-    lower, upper : float
-        Smallest and largest allowed value.
-    text : str
-        What it is, with its unit.
-    """
+    """A row of the core's table of settings."""
 
     name: str
-    default: float
+    default: float  # what it is unless something else is asked for
     lower: float
     upper: float
-    text: str
+    text: str  # what it is, with its unit
 
 
 SETTINGS: Final = {row[0]: Setting(*row) for row in _core.setting_table()}
@@ -98,21 +61,8 @@ SETTINGS: Final = {row[0]: Setting(*row) for row in _core.setting_table()}
 
 
 def setting(name: str, unit: str, **bounds: float) -> Any:
-    """Metadata of a field that is a setting of the core's integration: its range and text.
-
-    Parameters
-    ----------
-    name : str
-        Name of the setting in the core's table.
-    unit : str
-        Its unit.
-    **bounds : float
-        ``ge`` or ``le`` where the field allows more than the core, as 0 for a choice of the integrator.
-
-    Raises
-    ------
-    KeyError
-        If the core has no such setting: package and core do not belong together.
+    """Metadata of a field that is a setting of the core's integration: its range and text. Bounds (``ge``, ``le``) are those with
+    which the field allows more than the core, as 0 for a choice of the integrator.
     """
     row = SETTINGS[name]
     options: dict[str, Any] = {"ge": row.lower, "le": row.upper} | bounds

@@ -62,12 +62,7 @@ def form_rows(scene: Scene) -> Array:
     """The patches of a scene's surfaces, shape (samples of all, 4 + 2 n); no rows where all surfaces have their true form.
 
     Columns: patch, surface, angle (rad), shortest angle over which the depth changes (rad), then the depth (m) at each of n nodes
-    and its slope (m/rad).
-
-    Raises
-    ------
-    InputError
-        If a defect lies beside the contact line or between its nodes, or is one that no roller can follow.
+    and its slope (m/rad). Refused are defects beside the contact line or between its nodes, and those that no roller can follow.
     """
     patches = [
         patch for place, defect in enumerate(scene.defects) for patch in _patches(scene, ("defects", place), defect)
@@ -151,25 +146,8 @@ def _profile(defect: Pit | DepthMap, along: Array, station: float) -> Array:
 
 
 def felt(along: Array, depth: Array, equivalent: float) -> Array:
-    """How deep a roller sinks into a surface (m), shape (n,), at each place along rolling.
-
-    Parameters
-    ----------
-    along : ndarray, shape (n,)
-        Places (m), with the surface at depth zero beyond both ends.
-    depth : ndarray, shape (n,)
-        Depth of the surface (m), negative: height; zero at both ends, beyond which the surface has its true form.
-    equivalent : float
-        Equivalent radius of the contact (m).
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from trbdyn.model.defect_rows import felt
-    >>> along = np.linspace(-1e-3, 1e-3, 201)
-    >>> pit = np.where(abs(along) < 0.9999e-3, 1e-3, 0.0)
-    >>> float(felt(along, pit, 5e-3)[100])  # (1 mm)^2 / (2 5 mm)
-    0.0001
+    """How deep a roller sinks into a surface (m), shape (n,), at places along rolling (m) with the depth of the surface there (m;
+    negative: height), which is zero at both ends and beyond. `equivalent` is the equivalent radius of the contact (m).
     """
     height = depth[None, :] + (along[None, :] - along[:, None]) ** 2 / (2.0 * equivalent)
     return np.asarray(height.min(axis=1))

@@ -81,13 +81,7 @@ class ElasticCage(Model):
 
 
 def check_elastic_cage(scene: Scene) -> None:
-    """Refuse what does not go together with an elastic cage.
-
-    Raises
-    ------
-    InputError
-        If a scene has it.
-    """
+    """Refuse what does not go together with an elastic cage."""
     elastic, cage = scene.elastic_cage, scene.bearing.cage
     if elastic is None:
         return

@@ -52,15 +52,7 @@ PARTS = {"flank": 0, "large_end": 1, "small_end": 2}
 
 @dataclass(frozen=True)
 class Entry:
-    """A number for the core, and where the user gave it.
-
-    Attributes
-    ----------
-    path : tuple of str
-        The field, from the model that the entries describe.
-    value : float
-        The number (SI).
-    """
+    """A number for the core (SI), and the field where the user gave it, from the model that the entries describe."""
 
     path: Path
     value: float
@@ -154,16 +146,11 @@ def effects_entries(effects: Effects) -> Entries:
 
 
 def block_of(entries: Mapping[str, Entry], *, partial: bool = False) -> FloatArray:
-    """The core's parameter block, shape (P,): float64 in the order of `_core.parameter_table()`.
+    """The core's parameter block, shape (P,): float64 in the order of `_core.parameter_table()`; numbers beyond the table's
+    ranges are refused.
 
-    With `partial`, numbers that have no entry are NaN: for a caller in the core that does not read them.
-
-    Raises
-    ------
-    InputError
-        If a number lies outside the range of the core's table.
-    RuntimeError
-        If a name of the table has no entry, or an entry no name: package and core do not belong together.
+    With `partial`, numbers that have no entry are NaN: for a caller in the core that does not read them. Else names that only one
+    of table and entries has are a RuntimeError: package and core do not belong together.
     """
     table = _core.parameter_table()
     names = {row[0] for row in table}
@@ -190,13 +177,7 @@ def prefixed(prefix: str, entries: Entries) -> Entries:
 
 
 def bearing_geometry(bearing: Bearing) -> Geometry:
-    """Derived geometry of a bearing; it needs no oil and no effects.
-
-    Raises
-    ------
-    InputError
-        If the numbers do not fit together.
-    """
+    """Derived geometry of a bearing; it needs no oil and no effects."""
     entries = bearing_entries(bearing)
     try:
         return Geometry.from_parameters(block_of(entries, partial=True))
@@ -292,13 +273,7 @@ def elastic_entries(scene: Scene) -> Entries:
 
 
 def parameter_block(scene: Scene) -> FloatArray:
-    """The core's parameter block of a scene, shape (P,): float64 in the order of `_core.parameter_table()`.
-
-    Raises
-    ------
-    InputError
-        If a number lies outside the range of the core's table.
-    """
+    """The core's parameter block of a scene, shape (P,): float64 in the order of `_core.parameter_table()`."""
     return block_of(scene_entries(scene))
 
 
@@ -340,31 +315,15 @@ def diameter_deviation(scene: Scene) -> FloatArray:
 
 @dataclass(frozen=True)
 class RingLoad:
-    """What acts on the inner ring at an instant.
+    """What acts on the inner ring at an instant; moments and turns are about x and y through the roller-centre plane."""
 
-    Attributes
-    ----------
-    force : ndarray, shape (3,)
-        Force on the ring (N).
-    moment : ndarray, shape (2,)
-        Moment on the ring about x and y through the roller-centre plane (N m).
-    fixed : ndarray, shape (5,)
-        1 where `displacement` is prescribed, 0 where it is to be found.
-    displacement : ndarray, shape (5,)
-        Displacement along x, y, z (m) and rotation about x, y (rad).
-    shaft_speed, outer_speed : float
-        Speeds of shaft and outer ring (rad/s).
-    gravity : ndarray, shape (3,)
-        Acceleration of gravity (m/s2).
-    """
-
-    force: FloatArray
-    moment: FloatArray
-    fixed: FloatArray
-    displacement: FloatArray
-    shaft_speed: float
-    outer_speed: float
-    gravity: FloatArray
+    force: FloatArray  # on the ring (N), shape (3,)
+    moment: FloatArray  # on the ring (N m), shape (2,)
+    fixed: FloatArray  # 1 where `displacement` is prescribed, 0 where it is to be found, shape (5,)
+    displacement: FloatArray  # along x, y, z (m) and rotation (rad), shape (5,)
+    shaft_speed: float  # rad/s
+    outer_speed: float  # rad/s
+    gravity: FloatArray  # m/s2, shape (3,)
 
 
 def ring_load(scene: Scene, time: float = 0.0) -> RingLoad:
@@ -402,25 +361,12 @@ def motion_table(
     joints: FloatArray | None = None,
     loads: Mapping[str, Load] | None = None,
 ) -> FloatArray:
-    """Prescribed motion of the inner ring, as the core takes it.
+    """Prescribed motion of the inner ring, as the core takes it, shape (K, 44): knot time, value and slope of each channel of
+    `_core.motion_table()`, and 1 where a step need not end; the last `scene.period` repeats.
 
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    path : sequence of float or History, length 5
-        Displacement (m) and rotation (rad) of the ring that were found by equilibria. What the scene prescribes is
-        taken from the scene instead.
-    joints : ndarray, shape (J,), optional
-        Times at which a part of the path ends (s): where what acts on the ring has a joint.
-    loads : mapping of str to Load, optional
-        Loads on a free ring by the names of their channels, such as ``"force_x"``, in place of the scene's.
-
-    Returns
-    -------
-    ndarray, shape (K, 44)
-        Knot time, value and slope of each channel of `_core.motion_table()`, and 1 where a step need not end; the last
-        `scene.period` repeats.
+    `path` has the five displacements (m) and rotations (rad) of the ring that equilibria gave; what the scene prescribes is taken
+    from the scene instead. `joints` are times at which a part of the path ends (s): where what acts on the ring has a joint.
+    `loads` on a free ring, by the names of their channels such as ``"force_x"``, stand in place of the scene's.
     """
     given = [*(scene.displacement or (None, None, None)), scene.misalignment_x, scene.misalignment_y]
     ring = [
@@ -473,13 +419,7 @@ def parts_of(load: Load) -> tuple[tuple[float, float | History], ...]:
 
 
 def loads_period(scene: Scene, loads: Mapping[str, Load]) -> float | None:
-    """Common period of a scene and of loads that act besides (s); None if nothing repeats.
-
-    Raises
-    ------
-    InputError
-        If they never repeat together.
-    """
+    """Common period of a scene and of loads that act besides (s), None if nothing repeats; it must be there if both repeat."""
     periods = {
         name: load.times[-1] - load.times[0]
         for name, several in loads.items()

@@ -36,16 +36,7 @@ class Geometry(_Numbers):
 
     @classmethod
     def from_parameters(cls, block: NDArray[np.float64]) -> Geometry:
-        """Geometry of a parameter block.
-
-        Parameters
-        ----------
-        block : ndarray, shape (P,)
-            A value for each row of the core's table of parameters; those that are not a bearing's own may be NaN.
-
-        Raises
-        ------
-        ValueError
-            If the core refuses the numbers (its `CoreInputError`).
+        """Geometry of a parameter block, a value for each row of the core's table; those that are not a bearing's own may be NaN.
+        The core's `CoreInputError`, a ValueError, where it refuses the numbers.
         """
         return cls(**dict(zip((name for name, *_ in _TABLE), _core.geometry(block).tolist(), strict=True)))

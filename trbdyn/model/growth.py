@@ -81,15 +81,7 @@ class Growth(Model):
 
 @dataclass(frozen=True)
 class Strains:
-    """Growth over size of each part (1).
-
-    Attributes
-    ----------
-    cage, rollers, inner_ring, outer_ring : float
-        By temperature.
-    rotation : float
-        Of the cage's circumference, by its rotation.
-    """
+    """Growth over size of each part (1), by temperature, and that of the cage's circumference by its rotation."""
 
     cage: float
     rollers: float
@@ -99,13 +91,7 @@ class Strains:
 
 
 def strains(scene: Scene, growth: Growth) -> Strains:
-    """Strains of a scene's parts.
-
-    Raises
-    ------
-    InputError
-        If a material lacks what is needed, the speed changes, or a strain is not small.
-    """
+    """Strains of a scene's parts; refused where a material lacks what is needed, the speed changes, or a strain is not small."""
     bearing = scene.bearing
     found = Strains(
         cage=part_strain(bearing, "cage", growth.cage_c - growth.reference_c),
@@ -128,24 +114,12 @@ def _material(bearing: Bearing, part: str) -> tuple[tuple[str, ...], Material]:
 
 
 def part_strain(bearing: Bearing, part: str, rise: float) -> float:
-    """Strain of a bearing's part, cage or roller or, without a name, a ring, that is warmer by some kelvin (1).
-
-    Raises
-    ------
-    InputError
-        If its thermal expansion is needed and not given.
-    """
+    """Strain of a bearing's part, cage or roller or, without a name, a ring, that is warmer by some kelvin (1)."""
     return material_strain(*_material(bearing, part), rise)
 
 
 def material_strain(path: tuple[str, ...], material: Material, rise: float) -> float:
-    """Strain of a material that is warmer by some kelvin (1); the path names it in messages.
-
-    Raises
-    ------
-    InputError
-        If its thermal expansion is needed and not given.
-    """
+    """Strain of a material that is warmer by some kelvin (1); the path names it where its thermal expansion is missing."""
     if rise == 0.0:
         return 0.0
     if material.expansion is None:
@@ -192,13 +166,7 @@ def apex_slide(bearing: Bearing, relative: float) -> float:
 
 
 def grown_pocket(bearing: Bearing, pocket: Pocket, found: Strains) -> Pocket:
-    """A pocket as its roller finds it when the parts have grown.
-
-    Raises
-    ------
-    InputError
-        If the nominal roller penetrates a face: the play is used up.
-    """
+    """A pocket as its roller finds it when the parts have grown; refused where the nominal roller penetrates a face."""
     angle, radius = bearing.geometry.roller_axis_angle, 0.5 * bearing.pitch_diameter
     outward, axial = (
         np.array([math.cos(angle), 0.0, math.sin(angle)]),

@@ -403,17 +403,8 @@ def settled_time(quantities: Sequence[float | History], start: float) -> float:
 
 
 def common_period(periods: Mapping[str, float]) -> float | None:
-    """The shortest time after which everything that repeats begins again together (s); None if there is nothing.
-
-    Parameters
-    ----------
-    periods : mapping of str to float
-        Period of each quantity that repeats (s), by the field's name.
-
-    Raises
-    ------
-    InputError
-        If there is none within 1000 repetitions.
+    """The shortest time after which everything that repeats, by the field's name, begins again together (s); None if there is
+    nothing. Refused if there is none within `MOST_REPETITIONS`.
     """
     if not periods:
         return None
@@ -478,27 +469,13 @@ def knot_table(
     period: float | None = None,
     joints: FloatArray | None = None,
 ) -> FloatArray:
-    """Knots of a cubic Hermite curve for each quantity, all at the same times: as the core takes prescribed motion.
+    """Knots of a cubic Hermite curve for each of C quantities, all at the same times, as the core takes prescribed motion, shape
+    (K, 2 + 2 C): time (s), value and slope of each, 1 where the curves go on smoothly, or 0.
 
-    Parameters
-    ----------
-    quantities : sequence of float or History, length C
-        A channel each.
-    start : float
-        Time from which on the motion is needed (s).
-    settled : float, optional
-        From when on nothing changes but what repeats (s); by default the last knot of what does not.
-    period : float, optional
-        Common period of what repeats (s): the table then ends one period after `settled`.
-    joints : ndarray, shape (J,), optional
-        Times at which a part of what happens ends (s), so that a step ends there, too; by default those of the quantities.
-
-    Returns
-    -------
-    ndarray, shape (K, 2 + 2 C)
-        Time (s), value and slope of each channel, 1 where the curves go on smoothly, or 0. Two rows of the same time are a
-        kink. The curves are those of the histories, exactly: a cubic piece
-        split at another channel's knot stays the same cubic. A motion that never changes has one knot, at time 0.
+    Two rows of the same time are a kink. The curves are those of the histories, exactly: a cubic piece split at another channel's
+    knot stays the same cubic. A motion that never changes has one knot, at time 0. From `settled` on (s) nothing changes but what
+    repeats; with a `period` (s) the table ends one later. At `joints` (s) a part of what happens ends, so that a step ends there,
+    too; by default they are those of the quantities.
     """
     settled = settled_time(quantities, start) if settled is None else settled
     if not any(isinstance(q, History) for q in quantities):

@@ -20,16 +20,8 @@ Array = NDArray[np.float64]
 
 
 def drop_of(bearing: Bearing, profile: Profile, places: ArrayLike) -> Array:
-    """Drop of a profile below the straight cone (m), shape (n,).
-
-    Parameters
-    ----------
-    bearing : Bearing
-        Whose roller or raceway has the profile.
-    profile : Profile
-        The profile.
-    places : array_like, shape (n,)
-        Places from mid length along the axis (m); those beyond the effective length have the drop of its ends.
+    """Drop of a profile of a bearing below the straight cone (m), shape (n,), at places from mid length along the axis (m); those
+    beyond the effective length have the drop of its ends.
     """
     roller = bearing.roller
     half = 0.5 * roller.effective_length

@@ -170,13 +170,7 @@ class Housing(MovingBody):
 
 
 def check_inertias(axial: float, transverse: float) -> None:
-    """Refuse moments of inertia (kg m2) that no body has.
-
-    Raises
-    ------
-    InputError
-        If the axial one is more than twice the transverse one.
-    """
+    """Refuse moments of inertia (kg m2) that no body has: the axial one is at most twice the transverse one."""
     most = 2.0 * transverse
     if axial > most * (1.0 + 1e-9):
         limit = f"must be <= {most:.6g}: no body has more than twice its inertia_transverse (kg m2)"
@@ -184,13 +178,7 @@ def check_inertias(axial: float, transverse: float) -> None:
 
 
 def check_free_ring(scene: Scene) -> None:
-    """Refuse what goes together with a free ring alone, or not with it.
-
-    Raises
-    ------
-    InputError
-        If a scene has such a field.
-    """
+    """Refuse what goes together with a free ring alone, or not with it."""
     if scene.ring != "free":
         for name in ("ring_body", "torque"):
             if (given := getattr(scene, name)) is not None:
@@ -240,13 +228,7 @@ def counts_from_the_start(scene: Scene) -> bool:
 
 
 def check_housing(scene: Scene) -> None:
-    """Refuse what does not go together with an outer ring that moves with its housing.
-
-    Raises
-    ------
-    InputError
-        If a scene has such a field.
-    """
+    """Refuse what does not go together with an outer ring that moves with its housing."""
     if scene.housing is None:
         return
     if scene.ring == "follows":

@@ -56,13 +56,7 @@ class RotatingLoad(Model):
 
 
 def check_sign(name: str, load: float | History) -> None:
-    """Refuse a load (N) that is negative at some time.
-
-    Raises
-    ------
-    InputError
-        If it is.
-    """
+    """Refuse a load (N) that is negative at some time."""
     for place, value in enumerate(values_of(load)):
         if value < 0.0:
             raise InputError.of(

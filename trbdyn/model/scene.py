@@ -45,13 +45,7 @@ LEAST_ACROSS = 1e-3
 
 
 def oil_by_name(given: Any) -> Any:
-    """The name of an oil that ships stands for it at 60 C; anything else is given back.
-
-    Raises
-    ------
-    InputError
-        If there is no such oil.
-    """
+    """The name of an oil that ships stands for it at 60 C; anything else is given back."""
     if not isinstance(given, str):
         return given
     if given.lower() not in OILS:

@@ -23,14 +23,7 @@ WHOLE_PERIOD = 1e-12
 
 
 def turns(speed_rpm: float | History, start: float, end: float) -> float:
-    """Turns of the shaft from `start` to `end` (s), negative against positive speed.
-
-    Examples
-    --------
-    >>> from trbdyn.model.shaft import turns
-    >>> turns(3000.0, 0.0, 0.1)
-    5.0
-    """
+    """Turns of the shaft from `start` to `end` (s), negative against positive speed."""
     if isinstance(speed_rpm, History):
         return speed_rpm.integral(start, end) / 60.0
     return speed_rpm * (end - start) / 60.0
@@ -44,23 +37,10 @@ def angle_turned(speed_rpm: float | History, start: float, end: float) -> float:
 
 
 def time_to_turn(revolutions: float, speed_rpm: float | History, start: float) -> float:
-    """How long the shaft takes until it has turned by a number of turns, one way or the other (s).
+    """How long the shaft takes from `start` (s) until it has turned by a number of turns > 0, one way or the other (s); refused
+    if it never does.
 
     A shaft that turns to and fro has turned by the distance from where it was at `start`.
-
-    Parameters
-    ----------
-    revolutions : float
-        Turns of the shaft, > 0.
-    speed_rpm : float or History
-        Its speed (rpm).
-    start : float
-        When counting begins (s).
-
-    Raises
-    ------
-    InputError
-        If the shaft never turns that far.
     """
     if not isinstance(speed_rpm, History):
         if speed_rpm == 0.0:

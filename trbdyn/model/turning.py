@@ -37,13 +37,7 @@ class TurningRings:
         return value_at(self.speed_rpm, time) - value_at(self.outer_speed_rpm, time)
 
     def check_speeds(self) -> None:
-        """Refuse a speed beyond `MAX_SPEED_RPM`.
-
-        Raises
-        ------
-        InputError
-            If there is one.
-        """
+        """Refuse a speed beyond `MAX_SPEED_RPM`."""
         for name, quantity in (("speed_rpm", self.speed_rpm), ("outer_speed_rpm", self.outer_speed_rpm)):
             speed = max(values_of(quantity), key=abs)
             if abs(speed) > MAX_SPEED_RPM:

@@ -19,92 +19,40 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Recognised:
-    """What a face of the drawing was taken for.
-
-    Attributes
-    ----------
-    face : DrawnFace
-        The face.
-    pocket : int
-        Number of the pocket, or -1 where it is part of none.
-    surface : str
-        Name of the pocket's surface that it belongs to; empty where no roller can touch it.
-    """
+    """What a face of the drawing was taken for."""
 
     face: DrawnFace
-    pocket: int
-    surface: str
+    pocket: int  # number of the pocket, or -1 where it is part of none
+    surface: str  # name of the pocket's surface that it belongs to; empty where no roller can touch it
 
 
 @dataclass(frozen=True)
 class Rim:
-    """A surface of revolution that a land of a ring can guide.
+    """A surface of revolution that a land of a ring can guide."""
 
-    Attributes
-    ----------
-    side : {'outer', 'inner'}
-        Which ring's land is opposite to it.
-    radius : float
-        Its radius (m).
-    offset : float
-        Axial position of its middle from the roller-centre plane (m).
-    width : float
-        Its width (m).
-    """
-
-    side: str
-    radius: float
-    offset: float
-    width: float
+    side: str  # 'outer' or 'inner': the ring whose land is opposite to it
+    radius: float  # m
+    offset: float  # of its middle from the roller-centre plane, along the axis (m)
+    width: float  # m
 
 
 @dataclass(frozen=True, eq=False)
 class DrawnCage:
-    """A cage as it was recognised in a drawing.
-
-    Attributes
-    ----------
-    path : str
-        The file.
-    n_pockets : int
-        Number of its pockets.
-    place : Place
-        Where the drawing lies in the cage's frame.
-    pockets : tuple of Pocket
-        The different pockets.
-    kind_of : tuple of int
-        For each pocket, which of them it is.
-    volume : float
-        Volume (m3).
-    offset : float
-        Centre of the volume above the roller-centre plane (m).
-    centre : ndarray, shape (2,)
-        Centre of the volume off the axis of the pockets, along x and y of the cage's frame (m).
-    inertia : ndarray, shape (3, 3)
-        Moments of inertia about the centre at a density of 1, in the cage's frame (m5).
-    tolerance : float
-        Largest distance between drawn faces and facets (m).
-    plays : dict of str to float
-        How far the roller can move from the middle: radial, circumferential, axial (m); infinite where nothing is in the way.
-    rims : tuple of Rim
-        Surfaces that a land can guide.
-    recognised : tuple of Recognised
-        All faces of the drawing.
-    """
+    """A cage as it was recognised in a drawing."""
 
     path: str
     n_pockets: int
     place: Place
-    pockets: tuple[Pocket, ...]
-    kind_of: tuple[int, ...]
-    volume: float
-    offset: float
-    centre: FloatArray
-    inertia: FloatArray
-    tolerance: float
-    plays: dict[str, float]
-    rims: tuple[Rim, ...] = ()
-    recognised: tuple[Recognised, ...] = field(default=(), repr=False)
+    pockets: tuple[Pocket, ...]  # the different ones
+    kind_of: tuple[int, ...]  # for each pocket, which of them it is
+    volume: float  # m3
+    offset: float  # of the centre of the volume above the roller-centre plane (m)
+    centre: FloatArray  # of the volume off the axis of the pockets, along x and y of the cage's frame (m), shape (2,)
+    inertia: FloatArray  # about the centre at a density of 1, in the cage's frame (m5), shape (3, 3)
+    tolerance: float  # largest distance between drawn faces and facets (m)
+    plays: dict[str, float]  # radial, circumferential, axial (m); infinite where nothing is in the roller's way
+    rims: tuple[Rim, ...] = ()  # surfaces that a land can guide
+    recognised: tuple[Recognised, ...] = field(default=(), repr=False)  # all faces of the drawing
 
     def fields(self, density: float) -> dict[str, Any]:
         """Fields of `Cage`, for a density (kg/m3)."""

@@ -26,21 +26,11 @@ MOST_CELLS: Final = 20000
 
 @dataclass(frozen=True)
 class Facet:
-    """A convex polygon.
+    """A convex polygon."""
 
-    Attributes
-    ----------
-    corners : ndarray, shape (n, 3)
-        Counter-clockwise seen along minus the normal (m).
-    normal : ndarray, shape (3,)
-        Unit normal out of the solid.
-    face : int
-        Number of the face that it is part of.
-    """
-
-    corners: FloatArray
-    normal: FloatArray
-    face: int
+    corners: FloatArray  # counter-clockwise seen along minus the normal (m), shape (n, 3)
+    normal: FloatArray  # unit vector out of the solid
+    face: int  # number of the face that it is part of
 
     def moved(self, turn: FloatArray, origin: FloatArray) -> Facet:
         """In axes that are the rows of `turn`, from an origin."""
@@ -52,23 +42,8 @@ Near = Callable[[FloatArray, float, FloatArray, float], bool]
 
 
 def facets_of(drawing: Drawing, face: DrawnFace, tolerance: float, near: Near) -> list[Facet]:
-    """A face as facets; those that are not near are left out.
-
-    Parameters
-    ----------
-    drawing : Drawing
-        The drawing.
-    face : DrawnFace
-        One of its faces.
-    tolerance : float
-        Largest distance between face and facets (m).
-    near : callable
-        Whether a roller may touch anything within an extent of a point, with a normal within an angle of one.
-
-    Raises
-    ------
-    FileError
-        If its border is not understood, or it needs too many facets.
+    """A face as facets, which leave it by at most a tolerance (m); those that are not near are left out. A face whose border is
+    not understood, or that needs too many facets, is refused.
     """
     surfaces = drawing.surfaces
     if surfaces is None:

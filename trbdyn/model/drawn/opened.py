@@ -36,30 +36,14 @@ _LOCK = threading.RLock()
 
 @dataclass
 class DrawnFace:
-    """A face of the solid, as drawn.
+    """A face of the solid, as drawn."""
 
-    Attributes
-    ----------
-    number : int
-        Its number in the drawing, from 1.
-    kind : str
-        What it is: Plane, Cylinder, Cone, BSpline surface and so on.
-    area : float
-        Area (m2).
-    centre : ndarray, shape (3,)
-        Centre of the area (m).
-    triangles : ndarray, shape (T, 3, 3)
-        Triangles that cover it roughly (m): their corners lie on the face, counter-clockwise seen from outside the solid.
-    neighbours : tuple of (int, ndarray)
-        Faces that share an edge with it, and a point of that edge.
-    """
-
-    number: int
-    kind: str
-    area: float
-    centre: FloatArray
-    triangles: FloatArray
-    neighbours: tuple[tuple[int, FloatArray], ...] = ()
+    number: int  # in the drawing, from 1
+    kind: str  # Plane, Cylinder, Cone, BSpline surface and so on
+    area: float  # m2
+    centre: FloatArray  # of the area (m)
+    triangles: FloatArray  # cover it roughly (m), shape (T, 3, 3); counter-clockwise seen from outside
+    neighbours: tuple[tuple[int, FloatArray], ...] = ()  # faces that share an edge, and a point of that edge
 
     @property
     def is_plane(self) -> bool:
@@ -69,40 +53,18 @@ class DrawnFace:
 
 @dataclass
 class Drawing:
-    """One solid.
-
-    Attributes
-    ----------
-    path : str
-        The file.
-    faces : list of DrawnFace
-        Its faces.
-    volume : float
-        Volume (m3).
-    centre : ndarray, shape (3,)
-        Centre of the volume (m).
-    inertia : ndarray, shape (3, 3)
-        Second moments about the centre, as moments of inertia at a density of 1 (m5).
-    surfaces : object
-        What evaluates faces (`Surfaces`), or None where faces are known by their triangles alone (STL).
-    """
+    """One solid."""
 
     path: str
     faces: list[DrawnFace]
-    volume: float
-    centre: FloatArray
-    inertia: FloatArray
-    surfaces: Surfaces | None = None
+    volume: float  # m3
+    centre: FloatArray  # of the volume (m)
+    inertia: FloatArray  # about the centre at a density of 1 (m5), shape (3, 3)
+    surfaces: Surfaces | None = None  # None where faces are known by their triangles alone (STL)
 
 
 def library() -> ModuleType:
-    """Gmsh.
-
-    Raises
-    ------
-    ImportError
-        If it is not installed, or lacks a library of the system.
-    """
+    """Gmsh; an ImportError where it is not installed, or lacks a library of the system."""
     try:
         import gmsh
     except ImportError as error:
@@ -198,25 +160,8 @@ def _distance_to_lines(points: FloatArray, first: FloatArray, last: FloatArray) 
 
 @contextmanager
 def opened(path: str | os.PathLike[str], *, mesh_size: float, unit: str = "mm") -> Iterator[Drawing]:
-    """A drawing of one solid, as long as the context lasts.
-
-    Parameters
-    ----------
-    path : path-like
-        A STEP file, or an STL file.
-    mesh_size : float
-        Size of the triangles that cover faces roughly (m).
-    unit : {'mm', 'm', 'inch'}
-        Unit of an STL file, which does not tell its own; that of a STEP file stands in it.
-
-    Raises
-    ------
-    FileError
-        If it cannot be read, or has not one solid.
-    InputError
-        If an argument is not allowed.
-    ImportError
-        If Gmsh is not installed.
+    """A drawing of one solid, as long as the context lasts: a STEP file, or an STL file, which does not tell its unit. Triangles
+    of `mesh_size` (m) cover its faces roughly.
     """
     file = file_path(path, "drawing")
     ending = Path(file).suffix.lower()

@@ -23,18 +23,10 @@ MOST_POCKETS: Final = 200
 
 @dataclass(frozen=True)
 class Axis:
-    """The axis of a cage, as drawn.
+    """The axis of a cage, as drawn."""
 
-    Attributes
-    ----------
-    origin : ndarray, shape (3,)
-        The point of it next to the centre of the volume (m).
-    axes : ndarray, shape (3, 3)
-        Rows: two directions across, and that of the axis.
-    """
-
-    origin: FloatArray
-    axes: FloatArray
+    origin: FloatArray  # the point of it next to the centre of the volume (m)
+    axes: FloatArray  # rows: two directions across, and that of the axis
 
     def inside(self, points: FloatArray) -> FloatArray:
         """Points of the drawing in its axes (m)."""
@@ -42,15 +34,10 @@ class Axis:
 
 
 def axis_of(drawing: Drawing) -> Axis:
-    """The axis of the cage.
+    """The axis of the cage; a solid that is no ring is refused.
 
     It is first taken from the moments of inertia: that of the axis differs most from the other two. Then it follows exactly:
     normals of surfaces of revolution meet it, and normals of end planes run along it.
-
-    Raises
-    ------
-    FileError
-        If the solid is no ring.
     """
     values, vectors = np.linalg.eigh(drawing.inertia)
     alone = int(np.argmax(np.abs(values - np.median(values))))
@@ -143,13 +130,7 @@ def _samples(drawing: Drawing, face: DrawnFace) -> tuple[FloatArray, FloatArray]
 
 
 def pockets_of(drawing: Drawing, axis: Axis) -> int:
-    """Number of pockets: the largest number of pitches by which the turned cage comes together with itself.
-
-    Raises
-    ------
-    FileError
-        If there is none from 3 on.
-    """
+    """Number of pockets, 3 or more: the largest number of pitches by which the turned cage comes together with itself."""
     from scipy.spatial import cKDTree
 
     centres = np.array([axis.inside(face.centre) for face in drawing.faces])
@@ -184,23 +165,12 @@ def _turn(angle: float) -> FloatArray:
 class Place:
     """Where the drawing lies in the cage's frame: origin on the axis in the roller-centre plane, x through the middle of pocket
     0, z towards the large ends.
-
-    Attributes
-    ----------
-    axis : Axis
-        The axis.
-    is_turned : bool
-        Whether z of the cage runs against the direction of the axis.
-    height : float
-        Height of the roller-centre plane above the axis' origin, along z (m).
-    phase : float
-        Angle of pocket 0 about z (rad).
     """
 
     axis: Axis
-    is_turned: bool
-    height: float
-    phase: float
+    is_turned: bool  # whether z of the cage runs against the direction of the axis
+    height: float  # of the roller-centre plane above the axis' origin, along z (m)
+    phase: float  # angle of pocket 0 about z (rad)
 
     @property
     def turn(self) -> FloatArray:
@@ -241,12 +211,8 @@ class Frustum:
 
 def place_of(drawing: Drawing, axis: Axis, count: int, roller: Frustum) -> Place:
     """Where the drawing must lie so that rollers fit into its pockets: by a search over both directions, heights and angles, in
-    which the least distance between roller and cage, the middle one of all pockets, is largest.
-
-    Raises
-    ------
-    FileError
-        If no roller fits.
+    which the least distance between roller and cage, the middle one of all pockets, is largest. A cage into which no roller fits
+    is refused.
     """
     points = _spread(np.concatenate([face.triangles for face in drawing.faces]), 0.3 * roller.radius)
     own = axis.inside(points)

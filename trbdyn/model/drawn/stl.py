@@ -21,13 +21,7 @@ LARGE: Final = 1e-5
 
 
 def read_triangles(path: Path, scale: float) -> FloatArray:
-    """Triangles of an STL file, shape (T, 3, 3), times a scale.
-
-    Raises
-    ------
-    FileError
-        If it is none.
-    """
+    """Triangles of an STL file, shape (T, 3, 3), times a scale."""
     data = path.read_bytes()
     if len(data) >= 84 and len(data) == 84 + 50 * int.from_bytes(data[80:84], "little"):
         rows = np.frombuffer(data, dtype=np.dtype([("v", "<f4", (4, 3)), ("a", "<u2")]), offset=84)
@@ -45,12 +39,8 @@ def read_triangles(path: Path, scale: float) -> FloatArray:
 
 
 def faces_of(path: Path, triangles: FloatArray) -> tuple[list[NDArray[np.intp]], list[bool], Edges, FloatArray]:
-    """Numbers of the triangles of each face, whether it is plane, edges (two triangles, two corners), and all corners.
-
-    Raises
-    ------
-    FileError
-        If the triangles are not the closed surface of a solid.
+    """Numbers of the triangles of each face, whether it is plane, edges (two triangles, two corners), and all corners. Triangles
+    that are not the closed surface of a solid are refused.
     """
     size = float(np.ptp(triangles.reshape(-1, 3), axis=0).max())
     _, first, which = np.unique(

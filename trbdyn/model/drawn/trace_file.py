@@ -35,17 +35,7 @@ def points_of(
     height_unit: str | None,
     layer: str | None,
 ) -> tuple[Array, Array]:
-    """Positions and heights (m) in the order of the file, each of shape (n,).
-
-    Raises
-    ------
-    InputError
-        If an argument is not allowed, or a unit is not known.
-    FileError
-        If the file cannot be read; the message names the line.
-    ImportError
-        If a DXF file is given and ezdxf is not installed.
-    """
+    """Positions and heights (m) in the order of the file, shape (n,), with arguments and errors of `trbdyn.read_trace`."""
     file = file_path(path, "path")
     for name, unit in (("position_unit", position_unit), ("height_unit", height_unit)):
         if unit is not None and unit not in UNITS:
