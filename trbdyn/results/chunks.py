@@ -21,18 +21,8 @@ LEVEL = 1
 
 
 def fletcher32(data: bytes) -> int:
-    """Checksum of HDF5's filter Fletcher32.
-
-    Parameters
-    ----------
-    data : bytes
-        What it is taken of.
-
-    Returns
-    -------
-    int
-        Two sums modulo 65535 of the 16-bit words, first byte first: the plain one, and the one of all partial sums. Both are
-        kept as 65535 where they are 0, unless every word is 0.
+    """Checksum of HDF5's filter Fletcher32: two sums modulo 65535 of the 16-bit words, first byte first, the plain one and the
+    one of all partial sums. Both are kept as 65535 where they are 0, unless every word is 0.
     """
     words = np.frombuffer(data + b"\0" * (len(data) % 2), dtype=">u2").astype(np.uint64)
     plain = int(words.sum())
@@ -42,13 +32,7 @@ def fletcher32(data: bytes) -> int:
 
 
 def packed(rows: NDArray[Any]) -> bytes:
-    """A chunk as it lies in the file.
-
-    Parameters
-    ----------
-    rows : ndarray
-        The numbers of the chunk, in C order.
-    """
+    """A chunk of rows, in C order, as it lies in the file."""
     sorted_bytes = rows.reshape(-1).view(np.uint8).reshape(-1, rows.dtype.itemsize).T.tobytes()
     stream = packer.compress(sorted_bytes, LEVEL)
     return stream + fletcher32(stream).to_bytes(4, "little")

@@ -81,23 +81,11 @@ SLOPE: Final = 0.04
 def confidence(
     window: Result, average: Callable[[Result], dict[str, Any]], unsettled: str = ""
 ) -> tuple[dict[str, float] | None, str]:
-    """Half widths of the confidence intervals of averages over a window.
+    """Half widths of the confidence intervals of averages over a window, in their units, None where they cannot be told; and in
+    words from how many batches of which length they are, or why they cannot be told.
 
-    Parameters
-    ----------
-    window : Result
-        The records that averages are taken over.
-    average : callable
-        Gives the averages of a part of them, by the names of `AVERAGES`.
-    unsettled : str
-        Why the cage's motion is not known to have settled: then only the averages of `FOLLOWING` have intervals.
-
-    Returns
-    -------
-    half_widths : dict of str to float, or None
-        In the units of the averages; None where they cannot be told.
-    words : str
-        From how many batches of which length, or why it cannot be told.
+    `average` gives the averages of a part of the records by the names of `AVERAGES`. `unsettled` says why the cage's motion is
+    not known to have settled: then only the averages of `FOLLOWING` have intervals.
     """
     edges, turns = _batches(window)
     if len(edges) <= LEAST_BATCHES and unsettled:

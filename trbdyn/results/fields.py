@@ -70,22 +70,7 @@ class Field:
         return DIMENSIONS[self.kind]
 
     def shape(self, n_rollers: int, n_slots: int, n_modes: int = 0) -> tuple[int, ...]:
-        """Shape of one record of this field.
-
-        Parameters
-        ----------
-        n_rollers : int
-            Number of rollers, Z.
-        n_slots : int
-            Number of faces of a pocket.
-        n_modes : int
-            Number of modes of an elastic cage.
-
-        Returns
-        -------
-        tuple of int
-            ``()`` for a scalar, ``(Z, 3)`` for a vector a roller, and so on.
-        """
+        """Shape of one record of this field: ``()`` for a scalar, ``(Z, 3)`` for a vector a roller, and so on."""
         sizes = _FIXED_SIZES | {"roller": n_rollers, "slot": n_slots, "mode": n_modes}
         return tuple(sizes[dim] for dim in self.dims)
 
@@ -126,24 +111,8 @@ def groups(fields: Iterable[Field]) -> tuple[str, ...]:
 
 
 def select(fields: Iterable[Field], chosen: Iterable[str] | None) -> tuple[Field, ...]:
-    """Fields of the chosen groups; those of group ``"time"`` are always kept.
-
-    Parameters
-    ----------
-    fields : iterable of Field
-        Fields to choose from.
-    chosen : iterable of str or None
-        Names of groups; None means all.
-
-    Returns
-    -------
-    tuple of Field
-        The chosen fields in their old order.
-
-    Raises
-    ------
-    InputError
-        If a name is not a group.
+    """Fields of the chosen groups (all: None) in their old order; those of the group ``"time"`` are always kept. An unknown
+    group is an InputError.
     """
     fields = tuple(fields)
     if chosen is None:

@@ -79,32 +79,8 @@ LIBVER = ("v110", "v110")
 
 @dataclass(slots=True)
 class RunInfo:
-    """What is known of a run besides its records.
-
-    Attributes
-    ----------
-    scene : dict
-        The scene as plain data.
-    success : bool
-        Whether the run reached its end.
-    message : str
-        How it ended, in a sentence.
-    stats : dict
-        Solver statistics: steps, rhs_evaluations, wall_s and others.
-    counters : dict
-        Evaluations of each effect.
-    warnings : tuple of str
-        What the watch over the run found, see `trbdyn.run.watch`.
-    final_time : float
-        Time of the final state, s.
-    final_state : ndarray or None
-        The state vector there.
-    geometry : dict
-        Derived geometry of the bearing, SI.
-    meta : dict
-        Versions, instruction set and settings.
-    peaks : mapping of str to ndarray
-        Peaks of the whole run (`trbdyn.results.peaks`); empty if none are known.
+    """What is known of a run besides its records, as `Result` describes it; `scene` as plain data, and `peaks` of the whole run
+    (`trbdyn.results.peaks`), empty where none are known.
     """
 
     scene: dict[str, Any]
@@ -159,15 +135,7 @@ def stored_type(entry: Field) -> np.dtype[Any]:
 
 
 def as_kept(entry: Field, values: Array) -> NDArray[Any]:
-    """A field's numbers as a file keeps them, with the type and the digits that it has there.
-
-    Parameters
-    ----------
-    entry : Field
-        The field.
-    values : ndarray of float64
-        The numbers.
-    """
+    """A field's numbers as a file keeps them, with the type and the digits that it has there."""
     kind = stored_type(entry)
     digits = DIGITS.get(entry.group)
     if kind != np.float64 or digits is None:
@@ -178,13 +146,7 @@ def as_kept(entry: Field, values: Array) -> NDArray[Any]:
 
 
 def block_rows(expected: int | None, record_bytes: int) -> int:
-    """Rows of a chunk of every field, so that whole chunks of all fields are full at the same time.
-
-    Parameters
-    ----------
-    expected : int or None
-        Records that will come at most; None where nobody knows.
-    record_bytes : int
-        Bytes of a record.
+    """Rows of a chunk of every field, so that whole chunks of all fields are full at the same time: for at most as many records
+    as are expected (None: nobody knows), of some bytes each.
     """
     return max(1, min(expected or BLOCK_ROWS, BLOCK_ROWS, BLOCK_BYTES // max(1, record_bytes)))

@@ -48,13 +48,7 @@ _READ_ERRORS = (
 
 @contextmanager
 def opened(path: Path, bearing: str = "") -> Iterator[h5py.Group]:
-    """A result file, or a bearing's part of one, open to be read; what goes wrong inside is a FileError that names it.
-
-    Raises
-    ------
-    FileError
-        If the file is missing, damaged, of another kind or of a later version.
-    """
+    """A result file, or a bearing's part of one, open to be read; what goes wrong inside is a FileError that names it."""
     if not path.is_file():
         raise FileError(f"{path}: there is no such file")
     with _said(path), hdf5_file.open_to_read(path) as file:
@@ -62,13 +56,7 @@ def opened(path: Path, bearing: str = "") -> Iterator[h5py.Group]:
 
 
 def part_of(file: h5py.File, bearing: str) -> h5py.Group:
-    """A bearing's part of the file of an assembly; without a name the whole of any file.
-
-    Raises
-    ------
-    FileError
-        If there is none.
-    """
+    """A bearing's part of the file of an assembly, or a FileError if there is none; without a name the whole of any file."""
     if not bearing:
         return file
     key = bearing.encode()
@@ -137,11 +125,7 @@ def run_id_in(path: Path) -> str | None:
 
 def assembly_in(path: str | os.PathLike[str]) -> dict[str, Any] | None:
     """What a file says of its assembly: ``bearings``, their names, and ``assembly``; None where it is the file of one bearing.
-
-    Raises
-    ------
-    FileError
-        If the file cannot be read, or is of a later version.
+    A FileError if the file cannot be read, or is of a later version.
     """
     where = file_path(path, "path")
     with opened(where) as file:
@@ -174,46 +158,16 @@ def _check_files(path: Path, values: Any) -> None:
 
 
 def names_in(path: str | os.PathLike[str]) -> tuple[str, ...]:
-    """Names of the bearings in a file; one without a name where it has the file for itself.
-
-    Raises
-    ------
-    FileError
-        If the file cannot be read, or is of a later version.
-    """
+    """Names of the bearings in a file; one without a name where it has the file for itself."""
     table = assembly_in(path)
     return ("",) if table is None else tuple(table["bearings"])
 
 
 class FileSource:
-    """Reads fields from one file when they are asked for. The file is open only while reading.
+    """Reads the fields of a bearing from a file of `ResultWriter` when they are asked for; the file is open only while reading.
 
-    Parameters
-    ----------
-    path : path-like
-        A file that `ResultWriter` has written.
-    bearing : str
-        Name of a bearing in the file of an assembly; by default the file holds one bearing alone.
-
-    Attributes
-    ----------
-    fields : tuple of Field
-        The fields in the file, in the order of the record.
-    n_records : int
-        Number of whole records.
-    info : RunInfo
-        Everything besides the records.
-    run_id : str
-        Name of the run.
-    first_record : int
-        Place of its first record in the run: records before it are missing.
-    finished : bool
-        Whether its writer has ended it.
-
-    Raises
-    ------
-    FileError
-        If the file is missing, damaged, of another kind or of a later version.
+    `first_record` is the place of its first record in the run: records before it are missing. `finished` tells whether its
+    writer has ended it. A file that is missing, damaged, of another kind or of a later version is a FileError.
     """
 
     def __init__(self, path: str | os.PathLike[str], bearing: str = "") -> None:
@@ -293,13 +247,7 @@ class FileSource:
         return found
 
     def check(self) -> None:
-        """Read every record once.
-
-        Raises
-        ------
-        FileError
-            If one of them is damaged.
-        """
+        """Read every record once; a FileError if one of them is damaged."""
         with self.held_open():
             for entry in self.fields:
                 self.read(entry.name)
@@ -311,12 +259,8 @@ class FileSource:
             return np.asarray(self._held[threading.get_ident()][name][rows], dtype=float)
 
     def read(self, name: str) -> Array:
-        """All records of one field, shape (n_records, ...); read once and kept.
-
-        Raises
-        ------
-        FileError
-            If the file is damaged, or has been replaced since it was opened first.
+        """All records of one field, shape (n_records, ...); read once and kept. A FileError if the file is damaged, or has been
+        replaced since it was opened first.
         """
         if name not in self._cache:
             me = threading.get_ident()

@@ -21,24 +21,10 @@ def read_text_or_state(group: h5py.Group, name: str, count: int | None = None) -
 
 
 def read_own(group: h5py.Group, name: str, count: int | None = None, *, most: int | None = None) -> NDArray[Any]:
-    """A dataset that lies in this file itself, or its first rows: no links or storage that lead elsewhere, and no values that
-    were never written, which take no room in a file but much when they are read.
+    """A dataset that lies in this file itself, or its first `count` rows: no links or storage that lead elsewhere, and no
+    values that were never written, which take no room in a file but much when they are read.
 
-    Parameters
-    ----------
-    group : Group
-        Where it is.
-    name : str
-        Its name there.
-    count : int, optional
-        How many rows; all by default.
-    most : int, optional
-        Most bytes that it may take in memory.
-
-    Raises
-    ------
-    FileError
-        If there is no such dataset, or it does not hold so many rows, or they take too much memory.
+    A FileError if there is no such dataset, or it does not hold so many rows, or they take more than `most` bytes in memory.
     """
     where, links, key = group.file.filename, group.id.links, name.encode()
     if not links.exists(key):

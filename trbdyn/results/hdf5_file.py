@@ -41,18 +41,8 @@ Bearing = tuple[str, Mapping[str, Any], Sequence[Field], Mapping[str, tuple[int,
 
 
 def make(path: Path, bearings: Sequence[Bearing], assembly: Mapping[str, Any] | None, *, rows: int) -> None:
-    """Make a result file without records.
-
-    Parameters
-    ----------
-    path : Path
-        File to write; one that is there is emptied.
-    bearings : sequence of tuple
-        The bearings. Where the first one has no group, it has the file for itself.
-    assembly : mapping, optional
-        What several bearings sit on.
-    rows : int
-        Records of a chunk.
+    """Make a result file without records, with so many rows in a chunk; a file that is there is emptied. Where the first
+    bearing has no group, it has the file for itself; else `assembly` says what the bearings sit on.
     """
     names = [name for name, *_ in bearings]
     with h5py.File(path, "w", libver=LIBVER, locking=False) as file:
@@ -170,17 +160,7 @@ def opened_to_append(path: Path) -> Iterator[h5py.File]:
 
 
 def append(group: h5py.Group, name: str, rows: NDArray[Any]) -> None:
-    """Add rows to a dataset that is packed.
-
-    Parameters
-    ----------
-    group : Group
-        Where it is.
-    name : str
-        Its name there.
-    rows : ndarray, shape (n, ...)
-        What is added.
-    """
+    """Add rows, shape (n, ...), to a dataset that is packed."""
     dataset = h5py.h5d.open(group.id, name.encode())
     start = dataset.shape[0]
     dataset.set_extent((start + len(rows), *rows.shape[1:]))
@@ -208,13 +188,7 @@ def commit(file: h5py.Group, n_records: int, n_ending: int = 0) -> None:
 
 
 def open_to_read(path: Path) -> h5py.File:
-    """A file that is complete, is being written now, or whose writer was killed.
-
-    Raises
-    ------
-    OSError
-        If it cannot be read.
-    """
+    """A file that is complete, is being written now, or whose writer was killed; an OSError if it cannot be read."""
     if not is_locked(path):
         try:
             return h5py.File(path, "r", locking=False)

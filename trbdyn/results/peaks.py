@@ -97,14 +97,8 @@ def from_row(row: ArrayLike, layout: Layout) -> Peaks:
 
 
 def join(time: Array, rows: Mapping[str, Array]) -> Peaks:
-    """Peaks of some neighbouring intervals as those of one.
-
-    Parameters
-    ----------
-    time : ndarray, shape (T,)
-        Times of the records (s). The interval of the first one, which ends where they begin, counts only if it is alone.
-    rows : mapping of str to ndarray, each of shape (T, ...)
-        Peaks of each record's interval.
+    """Peaks of some neighbouring intervals, shape (T, ...), as those of one. `time` has the times of the records (s); the
+    interval of the first one, which ends where they begin, counts only if it is alone.
     """
     later = slice(1, None) if time.size > 1 else slice(None)
     length = np.diff(time) if time.size > 1 else np.ones(1)

@@ -8,14 +8,8 @@ from trbdyn.results.fields import contacts
 
 
 class Quantity(NamedTuple):
-    """How an entry of the summary is shown.
-
-    Attributes
-    ----------
-    words, unit : str
-        What it is, in a few words, and its unit.
-    meaning : str
-        A sentence, for the report and the documentation.
+    """How an entry of the summary is shown: what it is in a few words, its unit, and a sentence for the report and the
+    documentation.
     """
 
     words: str

@@ -14,14 +14,8 @@ if TYPE_CHECKING:
 
 
 class Range(NamedTuple):
-    """Loads and oils that a law was made for.
-
-    Attributes
-    ----------
-    load : tuple of float
-        Smallest and largest load group W = Q/(l E' Re).
-    material : tuple of float
-        Smallest and largest material group G = alpha0 E'.
+    """Loads and oils that a law was made for: smallest and largest load group W = Q/(l E' Re), and material group G = alpha0
+    E'.
     """
 
     load: tuple[float, float]
@@ -40,13 +34,7 @@ numerical solution (docs/theory/lubrication.md#which-law-of-rolling-resistance).
 
 
 def load_groups(result: Result) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """The load group W of every roller's contact with a raceway that carries, at every record.
-
-    Parameters
-    ----------
-    result : Result
-        Needs the group contacts.
-    """
+    """The load group W of every roller's contact with a raceway that carries, at every record; needs the group contacts."""
     geometry, length = result.scene.bearing.geometry, result.scene.bearing.roller.effective_length
     groups = [
         np.ravel(result[f"{side}_load"]) / (length * geometry.effective_modulus * radius)
@@ -57,12 +45,8 @@ def load_groups(result: Result) -> np.ndarray[Any, np.dtype[np.float64]]:
 
 
 def rolling_note(result: Result) -> str | None:
-    """What the law of rolling resistance is used for that it was not made for; None where it is not.
-
-    Parameters
-    ----------
-    result : Result
-        The part of a run that averages are taken of; needs the group contacts.
+    """What the law of rolling resistance is used for, in the part of a run that averages are taken of, that it was not made
+    for; None where it is not. Needs the group contacts.
     """
     scene = result.scene
     if not (scene.effects.rolling_resistance and scene.effects.films):

@@ -14,19 +14,11 @@ Array = NDArray[np.float64]
 
 
 class RecordsSource(WithoutFile):
-    """Fields within pieces of records; the array of a field is put together when it is first read.
+    """Fields within pieces of records, each of shape (n, length), in their order; they are kept, and must not change. `places`
+    says where each field is in a record: offset and shape.
 
-    Most results are asked for a few of their hundred quantities. To put all of them together at the end of a run would cost a
-    tenth of its time and twice its memory.
-
-    Parameters
-    ----------
-    pieces : sequence of ndarray, shape (n, length)
-        The records in their order. They are kept, and must not change.
-    fields : tuple of Field
-        The fields that can be read.
-    places : mapping of str to (offset, shape)
-        Where each field is in a record.
+    The array of a field is put together when it is first read: most results are asked for a few of their hundred quantities,
+    and all of them would cost a tenth of a run's time and twice its memory.
     """
 
     def __init__(

@@ -54,22 +54,8 @@ SPARE_BYTES = 1 << 20
 
 @dataclass(frozen=True)
 class Part:
-    """A bearing of a run, as its file has it.
-
-    Attributes
-    ----------
-    scene : Scene
-        The scene; ``scene.to_dict()`` is stored.
-    layout : sequence of (name, offset, shape)
-        Places of the fields in a record.
-    fields : sequence of Field
-        The table that describes them.
-    meta : mapping
-        Versions, instruction set, settings: anything that JSON can hold.
-    geometry : mapping of str to float
-        Derived geometry of the bearing, SI.
-    name : str
-        Its group in the file; none where it has the file for itself.
+    """A bearing of a run, as its file has it: its scene, where the fields of its table are in a record, what JSON holds of
+    versions and settings, its derived geometry (SI), and its group in the file, none where it has the file for itself.
     """
 
     scene: Any
@@ -120,46 +106,18 @@ class _Kept:
 class ResultWriter:
     """Writes the records of a run into an HDF5 file while it goes on.
 
-    Parameters
-    ----------
-    path : path-like
-        File to write.
-    *parts : Part
-        The bearings.
-    assembly : mapping, optional
-        What several bearings sit on.
-    groups : iterable of str, optional
-        Groups of fields to write; all by default. The group ``"time"`` is always written.
-    run_id : str, optional
-        Name of the run; a new one by default.
-    first_record : int
-        Place of the file's first record in the run.
-    taken_over : tuple of sequence of FileSource and int, optional
-        Each bearing in an older file of the same run, and how many of its records come first in this one, which takes its place.
-    expected : int, optional
-        Records that will come at most, where it is known: the file is made for them.
-    overwrite : bool
-        Replace a file that is there.
-    beside : bool
-        Make and write the file with a second thread while the caller goes on. What goes wrong is then raised by a later call;
-        `wait` tells whether the file is there.
-
-    Raises
-    ------
-    FileError
-        If the file cannot be created, or is there and is not to be replaced.
-    InputError
-        If a group is unknown, or the path names no file.
-
-    Notes
-    -----
     Records are written when two seconds have gone by or 8 MB wait, a part of a chunk less often (`LONGEST_SECONDS`). A run that
     is killed leaves a file that holds everything up to the last write. Room on the disk is made sure of at the beginning and
     before each write, so that a full disk is an error and leaves a readable file too. Use it as a context manager, or call
-    `close`.
+    `close`. What cannot be made or written is a FileError.
 
     The file belongs to the process that made it: in a forked child the writer is closed. If another program removes or replaces
     the file, the records are kept (see `flush`).
+
+    `first_record` is the place of the file's first record in the run. A run that goes on takes over the first records of its
+    older file (`taken_over`: each bearing there, and how many), whose place the new one takes. The file is made for `expected`
+    records, where that is known. `beside`: a second thread makes and writes the file while the caller goes on; what goes wrong
+    is then raised by a later call, and `wait` tells whether the file is there.
     """
 
     def __init__(
@@ -258,17 +216,8 @@ class ResultWriter:
             raise FileError(f"{self.path}: the result file {what}: {reason(error)}") from error
 
     def append(self, records: ArrayLike) -> None:
-        """Add records.
-
-        Parameters
-        ----------
-        records : array_like, shape (n, record_length)
-            Full records in the layout given at the start. They may be written later: do not change them.
-
-        Raises
-        ------
-        FileError
-            If the file cannot be written.
+        """Add full records, shape (n, record_length), in the layout given at the start. They may be written later: do not
+        change them.
         """
         rows = np.atleast_2d(np.asarray(records, dtype=float))
         if rows.shape[0] == 0:
@@ -293,25 +242,15 @@ class ResultWriter:
     def flush(self) -> None:
         """Write what waits in memory, so that it survives a kill.
 
-        Raises
-        ------
-        FileError
-            If the file cannot be written; what the disk had room for stays readable. Also if another
-            program has removed the file, which is then put back, or has put another one in its place, which is left alone: the
-            records are then in a file beside it. The message names it.
+        What the disk had room for stays readable. If another program has removed the file, it is put back; one that it has put
+        in its place is left alone, and the records are then in a file beside it. Both are a FileError that names the file.
         """
         rows = self._waiting.take()
         self.wait()
         self._write(rows)
 
     def wait(self) -> None:
-        """Wait for the second thread, and raise what went wrong there.
-
-        Raises
-        ------
-        FileError
-            If the file cannot be made or written.
-        """
+        """Wait for the second thread, and raise what went wrong there."""
         if self._second is not None:
             self._second.wait()
 
@@ -388,13 +327,7 @@ class ResultWriter:
         self._let_go()
 
     def sync(self) -> None:
-        """Write what waits, and have the system put it on the disk.
-
-        Raises
-        ------
-        FileError
-            If the file cannot be written.
-        """
+        """Write what waits, and have the system put it on the disk."""
         self.flush()
         with self._guard("cannot be written"), self.path.open("r+b") as stream:
             os.fsync(stream.fileno())
@@ -410,20 +343,7 @@ class ResultWriter:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     def finish(self, *endings: Mapping[str, Any]) -> None:
-        """Write how the run ended, and close the file.
-
-        Parameters
-        ----------
-        *endings : mapping
-            Of each bearing: ``success``, whether the run reached its end, ``message``, how it ended in a sentence, ``stats`` and
-            ``counters``, what the integrator did, ``warnings``, what the watch found, ``final_time`` (s), ``final_state``, the
-            last good state or None, and ``peaks`` of the whole run by name.
-
-        Raises
-        ------
-        FileError
-            If the file cannot be written.
-        """
+        """Write how the run ended, for each bearing the arguments of `_ending`, and close the file."""
         self.wait()
         rows = self._waiting.take()
         written = [_ending(part.fields, **ending) for part, ending in zip(self._parts, endings, strict=True)]
@@ -460,7 +380,9 @@ def _ending(
     peaks: Mapping[str, Array] | None = None,
     warnings: Sequence[str] = (),
 ) -> dict[str, NDArray[Any]]:
-    """What the group ``run`` holds of how a run ended."""
+    """What the group ``run`` holds of how a run ended: `final_time` in s, `final_state` the last good state or None, `peaks`
+    those of the whole run by name.
+    """
     how = {"success": bool(success), "message": str(message), "final_time": float(final_time)}
     how |= {"stats": dict(stats), "counters": dict(counters), "warnings": list(warnings)}
     ending: dict[str, NDArray[Any]] = {"ending": np.frombuffer(json_text(how).encode(), dtype="u1")}

@@ -15,11 +15,6 @@ class WaitingRows:
 
     A result file keeps the records in chunks. A chunk that is written whole costs one write; one that is written in parts is
     looked up again each time. While nothing presses, only whole blocks of records are therefore given away.
-
-    Parameters
-    ----------
-    block : int or None
-        Records of a block; None where the file has no chunks of a common length.
     """
 
     def __init__(self, block: int | None) -> None:
@@ -36,28 +31,13 @@ class WaitingRows:
         return time.monotonic() - self._taken_at
 
     def append(self, rows: Array) -> None:
-        """Add records.
-
-        Parameters
-        ----------
-        rows : ndarray, shape (n, record_length)
-            The records; they are not copied.
-        """
+        """Add records, which are not copied."""
         self._pieces.append(rows)
         self.nbytes += rows.nbytes
 
     def take(self, *, whole_blocks: bool = False) -> list[Array]:
-        """Give away what waits.
-
-        Parameters
-        ----------
-        whole_blocks : bool
-            Give away whole blocks only, counted from the first record of all; the rest goes on waiting.
-
-        Returns
-        -------
-        list of ndarray, shape (n, record_length)
-            Pieces of records, in order.
+        """Give away what waits, in order; or only whole blocks, counted from the first record of all, while the rest goes on
+        waiting.
         """
         taken, self._pieces = self._pieces, []
         count = sum(map(len, taken))

@@ -64,20 +64,11 @@ UNITS: Final[Mapping[str, str]] = {"bias_orbit": "Cpr"}
 
 @dataclass(frozen=True)
 class Bias:
-    """How much too high or too low a number is by the integration.
+    """How much too high or too low a number is by the integration with an accuracy `preset`.
 
-    Attributes
-    ----------
-    share : float
-        Number of this accuracy over that of a far tighter one, less one, or their difference in `unit`; negative: too low.
-    half_width : float
-        Half width of its 95 % interval; nan where it is not known.
-    preset : str
-        The accuracy.
-    measured : str
-        Where it was measured, in words.
-    unit : str
-        What the share is of, where it is not of the number itself.
+    `share` is the number of this accuracy over that of a far tighter one, less one, or their difference in `unit` where it is
+    no share of the number itself; `half_width` is that of its 95 % interval, nan where it is not known; `measured` says where
+    it was measured.
     """
 
     share: float
@@ -100,24 +91,10 @@ class Bias:
 def measured(
     scene: Scene, preset: str | None, axial_load: float, colliding: bool
 ) -> tuple[str, Mapping[str, Any]] | None:
-    """The measured scene that a scene is most like, and the biases of a preset there.
+    """The measured scene that a scene is most like by its axial load (N) and by whether its cage whirls (`estimate.fast_cage`),
+    and the relative biases of a preset there: ``bias_<name>`` and ``bias_<name>_half_width`` for the names of `READ`.
 
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    preset : str or None
-        The accuracy; None for tolerances of one's own.
-    axial_load : float
-        Axial load that the ring carries (N).
-    colliding : bool
-        Whether the cage whirls (see `estimate.fast_cage`).
-
-    Returns
-    -------
-    tuple of str and mapping, or None
-        ``bias_<name>`` and ``bias_<name>_half_width`` for the names of `READ`, relative. None for other tolerances and effects
-        than those that were measured.
+    None for tolerances of one's own (preset None), and for other effects than those that were measured.
     """
     table = estimate.table()
     known = {
@@ -174,17 +151,8 @@ def _where(case: str) -> str:
 
 
 def biases(result: Result) -> dict[str, Bias]:
-    """Measured biases of the numbers of a run, by the names of the summary.
-
-    Parameters
-    ----------
-    result : Result
-        The run.
-
-    Returns
-    -------
-    dict of str to Bias
-        Empty where no preset was used, or nothing was measured for it.
+    """Measured biases of the numbers of a run, by the names of the summary; none where no preset was used, or nothing was
+    measured for it.
     """
     preset = preset_of(result)
     if not result.has_cage or "assembly" in result.meta:

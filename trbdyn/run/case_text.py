@@ -31,21 +31,8 @@ _TABLES: Final = tuple(_HEADS)
 
 
 def case_text(scene: Subject, run: RunOptions, *, title: str = "") -> str:
-    """A complete TOML case, with comments where it is one of one bearing.
-
-    Parameters
-    ----------
-    scene : Scene or Assembly
-        The scene or the assembly.
-    run : RunOptions
-        How it is run.
-    title : str
-        First line.
-
-    Returns
-    -------
-    str
-        Text that `load_case`, or `load_assembly`, reads back to the same scene and run options.
+    """A complete case as TOML that reads back to the same scene, or assembly, and run options; with comments where it is one of
+    one bearing. `title` is its first line.
     """
     if not isinstance(scene, Scene):
         return tables_text(scene.tables() | {"run": run.to_dict()}, title=title)
@@ -59,19 +46,8 @@ def case_text(scene: Subject, run: RunOptions, *, title: str = "") -> str:
 
 
 def tables_text(tables: dict[str, Any], *, title: str = "") -> str:
-    """Tables of a case or of an assembly as TOML, without comments.
-
-    Parameters
-    ----------
-    tables : dict
-        Tables, and lists of tables, by their names.
-    title : str
-        First line.
-
-    Returns
-    -------
-    str
-        Text that reads back to the same tables, without what is None.
+    """Tables of a case or of an assembly, and lists of tables, by their names, as TOML without comments and without what is
+    None; `title` is its first line.
     """
     lines = [f"# {title}"] if title else []
     for name, value in tables.items():

@@ -121,13 +121,7 @@ class Checkpoint:
 
     @classmethod
     def from_bytes(cls, data: bytes) -> Self:
-        """The checkpoint that `to_bytes` wrote.
-
-        Raises
-        ------
-        ValueError
-            If the content is anything else; says why.
-        """
+        """The checkpoint that `to_bytes` wrote; a ValueError that says why if the content is anything else."""
         first, _, rest = data.partition(b"\n")
         name, _, version = first.partition(b" ")
         if name != MAGIC:
@@ -200,12 +194,8 @@ def previous_path(path: Path) -> Path:
 
 
 def write(path: Path, checkpoint: Checkpoint) -> None:
-    """Write a checkpoint; the one that was there becomes the previous one. Killed at any instant, one of them stays whole.
-
-    Raises
-    ------
-    FileError
-        If it cannot be written, or that of another run lies there; those that were there stay.
+    """Write a checkpoint; the one that was there becomes the previous one. Killed at any instant, one of them stays whole. A
+    FileError, which leaves those that were there, if it cannot be written, or that of another run lies there.
     """
     older = previous_path(path)
     try:
@@ -229,12 +219,8 @@ def write(path: Path, checkpoint: Checkpoint) -> None:
 
 
 def _belongs(path: Path, run_id: str) -> bool:
-    """Whether a checkpoint of this run is at a path; a damaged file, which says nothing of its run, is moved aside.
-
-    Raises
-    ------
-    FileError
-        If it belongs to another run, or is no file.
+    """Whether a checkpoint of this run is at a path; a damaged file, which says nothing of its run, is moved aside. A FileError
+    if it belongs to another run, or is no file.
     """
     if not os.path.lexists(path):
         return False
@@ -251,21 +237,8 @@ def _belongs(path: Path, run_id: str) -> bool:
 
 
 def check_free(output: Path, replaced: str | None, *, overwrite: bool) -> None:
-    """See that a new run with a schedule may write its checkpoints.
-
-    Parameters
-    ----------
-    output : Path
-        The new run's result file.
-    replaced : str, optional
-        Name of the run whose result it replaces.
-    overwrite : bool
-        Whether checkpoints of other runs may be replaced too.
-
-    Raises
-    ------
-    FileError
-        If a file lies there that must not be replaced.
+    """See that a new run with a schedule may write its checkpoints beside its result file; a FileError if a file lies there
+    that must not be replaced. Those of the run whose result it replaces may be, and with `overwrite` those of any run.
     """
     path = checkpoint_path(output)
     for place in (path, previous_path(path)):
@@ -316,13 +289,7 @@ def clear(output: Path) -> None:
 
 
 def read(path: Path) -> Checkpoint:
-    """One checkpoint file.
-
-    Raises
-    ------
-    FileError
-        If it is missing, damaged or of another kind; says why.
-    """
+    """One checkpoint file; a FileError that says why if it is missing, damaged or of another kind."""
     try:
         if not path.is_file() and path.exists():
             raise ValueError("it is not a regular file")
@@ -340,19 +307,8 @@ def read(path: Path) -> Checkpoint:
 
 
 def read_last_good(output: str | os.PathLike[str], tell: Callable[[str], None]) -> Checkpoint:
-    """The newest checkpoint of a run that can be used.
-
-    Parameters
-    ----------
-    output : path-like
-        The run's result file.
-    tell : callable
-        Is told, in a sentence, if that is not the newest one.
-
-    Raises
-    ------
-    FileError
-        If there is none; says why of each.
+    """The newest checkpoint of a run that can be used, beside its result file. `tell` is told, in a sentence, if that is not
+    the newest one. If there is none, a FileError says why of each.
     """
     newest = checkpoint_path(output)
     troubles: list[str] = []
@@ -371,21 +327,8 @@ def read_last_good(output: str | os.PathLike[str], tell: Callable[[str], None]) 
 
 
 def check_instruction_set(checkpoint: Checkpoint, wanted: str | None, tell: Callable[[str], None]) -> str:
-    """The kernel variant to go on with.
-
-    Parameters
-    ----------
-    checkpoint : Checkpoint
-        Where to go on.
-    wanted : str, optional
-        What the user asks for; by default the one of the checkpoint.
-    tell : callable
-        Is told, in a sentence, if the results will not be bit-identical.
-
-    Raises
-    ------
-    InputError
-        If this machine cannot run it.
+    """The kernel variant to go on with: the one that is wanted, by default that of the checkpoint. `tell` is told, in a
+    sentence, if the results will not be bit-identical; an InputError if this machine cannot run it.
     """
     here = _core.instruction_sets()
     was, names = checkpoint.instruction_set, ", ".join(here)

@@ -58,20 +58,8 @@ def kept_by_default(
     *,
     optional: Sequence[Group] = (),
 ) -> dict[str, Any]:
-    """``save_every`` and ``save_groups`` of a run, by default where they are not given.
-
-    Parameters
-    ----------
-    length : float
-        Length of the run (s).
-    speed_rpm : float or History
-        Speed of the shaft (rpm).
-    save_every : float, optional
-        Time between records (s), as given.
-    save_groups : sequence of str, optional
-        Groups of quantities, as given.
-    optional : sequence of str
-        Groups of what few bearings have, as far as there is something to keep (`groups_of`).
+    """``save_every`` and ``save_groups`` of a run of some length (s), by default where they are not given; `optional` are those
+    of few bearings of which there is something to keep (`groups_of`).
     """
     every = interval(length, speed_rpm) if save_every is None else save_every
     if save_groups is not None:

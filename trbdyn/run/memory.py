@@ -95,20 +95,7 @@ def _entries(path: Path) -> dict[str, int]:
 
 
 class Kept:
-    """Records in memory, a piece at a time, as far as a run keeps their fields.
-
-    Parameters
-    ----------
-    layout : sequence of (name, offset, shape)
-        Places of all fields in a record.
-    fields : sequence of Field
-        The fields to keep.
-
-    Attributes
-    ----------
-    size : int
-        Bytes so far.
-    """
+    """Records in memory, a piece at a time, as far as a run keeps their fields; `size` is what they take so far (byte)."""
 
     def __init__(self, layout: Layout, fields: Sequence[Field]) -> None:
         self.size = 0

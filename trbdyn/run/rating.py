@@ -177,12 +177,8 @@ def _loadings(subject: Scene | Assembly) -> dict[str, tuple[Scene, Loading]]:
 
 
 def of_run(result: Result) -> Loading:
-    """Loads of a run's records after the transient; each counts by the speed between the rings, that is by revolutions.
-
-    Raises
-    ------
-    InputError
-        If the groups cage and rollers were not recorded.
+    """Loads of a run's records after the transient; each counts by the speed between the rings, that is by revolutions. An
+    InputError if the groups cage and rollers were not recorded.
     """
     replay, scene, time = Replay(result), result.scene, result["time"]
     first = int(np.searchsorted(time, result.settling().time)) if len(result) > 2 else 0

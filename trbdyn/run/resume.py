@@ -137,12 +137,8 @@ def resume(
 def _revived(
     output: Path, found: Checkpoint, instruction_set: str | None, tell: Callable[[str], None]
 ) -> tuple[Simulation, RunOptions]:
-    """A simulation as it was when a checkpoint was written, and the options of its run.
-
-    Raises
-    ------
-    FileError
-        If the checkpoint cannot be used.
+    """A simulation as it was when a checkpoint was written, and the options of its run; a FileError if the checkpoint cannot be
+    used.
     """
     where = checkpoint.checkpoint_path(output)
     variant = checkpoint.check_instruction_set(found, instruction_set, tell)

@@ -101,21 +101,7 @@ class RunningBearing:
 
 
 class Run:
-    """One call of `Simulation.run`, or what is left of it when it is resumed.
-
-    Parameters
-    ----------
-    sim : Simulation
-        Whose run it is.
-    options : RunOptions
-        Its options.
-    times : ndarray
-        Times of its records (s).
-    callback : callable, optional
-        As in `Simulation.run`.
-    done : int
-        Records that it has made already.
-    """
+    """One call of `Simulation.run`, or what is left of it when it is resumed after `done` records."""
 
     def __init__(
         self, sim: Simulation, options: RunOptions, times: Array, callback: Callback | None, done: int = 0
@@ -327,12 +313,8 @@ class Run:
         return load(self.output, bearing=bearing.of.name)
 
     def _call_back(self) -> bool:
-        """What the callback answers. It may look at the simulation, but not move it.
-
-        Raises
-        ------
-        FileError
-            In a process that the callback has forked, if it comes back from there: the result file is its parent's.
+        """What the callback answers. It may look at the simulation, but not move it. A FileError in a process that it has
+        forked, if it comes back from there: the result file is its parent's.
         """
         if self.callback is None:
             return False
@@ -519,22 +501,9 @@ def statistics_of(
     integrator: str,
     instruction_set: str,
 ) -> dict[str, Any]:
-    """Solver statistics of a whole simulation, and the wall time of one of its runs.
-
-    Parameters
-    ----------
-    counted : mapping of str to float
-        What the integrator did.
-    subject : Scene, Assembly or Seating
-        What is run, by whose speed turns are counted; they are NaN where a torque drives the shaft.
-    start, end : float
-        Bearing time of the run (s).
-    began, spent : float
-        When it began by the clock, and the time that the core took (s).
-    steps_before : float
-        Steps of the simulation before the run.
-    integrator, instruction_set : str
-        What it was computed with.
+    """Solver statistics of a whole simulation, and of one of its runs from `start` to `end` of bearing time (s): its wall time
+    since it `began` by the clock, the time that the core took of it (`spent`, s), and its turns, counted by the subject's
+    speed, NaN where a torque drives the shaft.
     """
     turned = abs(turns(subject.turning_rpm, start, end)) if subject.torque is None else math.nan
     length = end - start
@@ -563,13 +532,7 @@ def progress_bar(times: Array, *, shown: bool) -> Any:
 
 
 def output_times(start: float, end: float, every: float) -> Array:
-    """Times of the records (s): every so often, and at the end.
-
-    Raises
-    ------
-    InputError
-        If there would be too many.
-    """
+    """Times of the records (s): every so often, and at the end. An InputError if there would be too many."""
     if (end - start) / every > MOST_RECORDS:
         allowed = (
             f"must be at least {(end - start) / MOST_RECORDS:.3g}, for at most {MOST_RECORDS} records in this run (s)"

@@ -485,13 +485,7 @@ def _check_output(path: Path) -> None:
 
 
 def _numbers(values: ArrayLike) -> Array:
-    """A state vector as users give it.
-
-    Raises
-    ------
-    InputError
-        If it is no sequence of numbers.
-    """
+    """A state vector as users give it; an InputError if it is no sequence of numbers."""
     try:
         return np.ascontiguousarray(values, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:

@@ -30,14 +30,8 @@ DECIDE: Final = ("rolling_law", "thermal_law", "replenishment", "mixed_law", "ri
 
 @dataclass(frozen=True)
 class TorqueLaws:
-    """What other laws make of a torque.
-
-    Attributes
-    ----------
-    factors : dict of str to float
-        Torque by another law over that of the subject, by the law's name.
-    record : str
-        How far the subject's effects were off measured torques; empty where they were not compared.
+    """What other laws make of a torque: `factors`, by the law's name, of that of the subject. `record` says how far the
+    subject's effects were off measured torques; it is empty where they were not compared.
     """
 
     factors: dict[str, float]
@@ -66,27 +60,8 @@ class TorqueLaws:
 
 
 def torque_laws(subject: Subject) -> TorqueLaws | None:
-    """What the laws of rolling resistance that can be defended make of the torque of a scene or an assembly.
-
-    The power that all contacts lose at the equilibrium, in ideal rolling, is taken with each law.
-
-    Parameters
-    ----------
-    subject : Scene or Assembly
-        What is simulated.
-
-    Returns
-    -------
-    TorqueLaws or None
-        None without rolling resistance.
-
-    Examples
-    --------
-    >>> import trbdyn as trb
-    >>> from trbdyn.run.torque_laws import torque_laws
-    >>> found = torque_laws(trb.cases.scene_32216(2000.0))
-    >>> found.low < 1.0 < found.high
-    True
+    """What the laws of rolling resistance that can be defended make of the torque of a scene or an assembly; None without
+    rolling resistance. The power that all contacts lose at the equilibrium, in ideal rolling, is taken with each law.
     """
     expect("subject", subject, Scene, Assembly)
     parts = [part for part in subject.parts.values() if part.effects.films and part.effects.rolling_resistance]
@@ -109,17 +84,8 @@ def torque_laws(subject: Subject) -> TorqueLaws | None:
 
 
 def straight_rollers(scene: Scene) -> tuple[float, float] | None:
-    """Torque and largest pressure with straight rollers over those with a profile that nobody gave, at the equilibrium.
-
-    Parameters
-    ----------
-    scene : Scene
-        What is simulated.
-
-    Returns
-    -------
-    tuple of float, or None
-        Both factors (1); None where the profile is given, or straight.
+    """Torque and largest pressure with straight rollers over those with a profile that nobody gave, at the equilibrium (1);
+    None where the profile is given, or straight.
     """
     bearing, scene = scene.bearing, scene.replace(elastic_cage=None)
     if bearing.roller.profile.kind == "straight" or not any(

@@ -46,23 +46,8 @@ GROUPS_OF: Final = {
 
 
 def check_wanted(wanted: Mapping[str, float], groups: tuple[str, ...], fields: Collection[str], has_cage: bool) -> None:
-    """Check that what is asked for can be had.
-
-    Parameters
-    ----------
-    wanted : mapping of str to float
-        Largest half width of the 95 % confidence interval over the size of the average, by the names of the summary.
-    groups : tuple of str
-        Groups that the run keeps.
-    fields : collection of str
-        Names of the fields that this bearing has.
-    has_cage : bool
-        Whether there is a cage.
-
-    Raises
-    ------
-    InputError
-        If a name is none of an average, or what an average needs is not kept or does not exist.
+    """Check that the averages in `wanted` can be had with the groups that a run keeps and the fields that this bearing has. An
+    InputError if a name is none of an average, or what an average needs is not kept or does not exist.
     """
     for name in wanted:
         check_average(name, "run", "until")
@@ -82,19 +67,8 @@ def check_wanted(wanted: Mapping[str, float], groups: tuple[str, ...], fields: C
 
 
 def check_average(name: str, *field: str) -> None:
-    """Check that a name is one of an average of the summary.
-
-    Parameters
-    ----------
-    name : str
-        What was given.
-    *field : str
-        Where it was given.
-
-    Raises
-    ------
-    InputError
-        If it is none; the message has the name that is nearest to it.
+    """Check that a name is one of an average of the summary. If it is none, an InputError at that field has the name that is
+    nearest.
     """
     if name not in AVERAGES:
         near = get_close_matches(str(name), AVERAGES, 1)
@@ -103,26 +77,14 @@ def check_average(name: str, *field: str) -> None:
 
 
 def groups_for(name: str) -> tuple[str, str, str]:
-    """Groups of records that an average needs: those that tell whether the motion has settled, and last its own.
-
-    Parameters
-    ----------
-    name : str
-        One of `trbdyn.results.confidence.AVERAGES`.
-    """
+    """Groups of records that an average needs: those that tell whether the motion has settled, and last its own."""
     own = next((group for start, group in GROUPS_OF.items() if name.startswith(start)), "cage")
     return "cage", "rollers", own
 
 
 class Until:
-    """Looks whether averages are known as well as was asked for.
-
-    Parameters
-    ----------
-    wanted : mapping of str to float
-        Largest half width over the size of the average, by name.
-    records : int
-        Records of the longest run.
+    """Looks whether averages are known as well as was asked for, in a run of at most so many records. `wanted` has the largest
+    half width over the size of each average, by the names of the summary.
     """
 
     def __init__(self, wanted: Mapping[str, float], records: int) -> None:
