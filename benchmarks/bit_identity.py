@@ -49,7 +49,7 @@ HARD = (
     "land_thick_oil",
     "land_without_oil",
 )
-"""Scenes of tests/stability/hard_scenes.py."""
+"""Scenes of tests/stability/hard_scenes.toml."""
 TOLERANCES = {
     "position": ("atol_position", ("r", "x", "y", "z")),
     "angle": ("atol_angle", ("psi", "skew", "tilt")),
