@@ -3,37 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.base.own_files import digest_of
-from trbdyn.model.drawn.opened import DrawnFace
 from trbdyn.model.drawn.placing import Place
 from trbdyn.model.pocket import OtherPocket, Pocket
 
 FloatArray = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Recognised:
-    """What a face of the drawing was taken for."""
-
-    face: DrawnFace
-    pocket: int  # number of the pocket, or -1 where it is part of none
-    surface: str  # name of the pocket's surface that it belongs to; empty where no roller can touch it
-
-
-@dataclass(frozen=True)
-class Rim:
-    """A surface of revolution that a land of a ring can guide."""
-
-    side: str  # 'outer' or 'inner': the ring whose land is opposite to it
-    radius: float  # m
-    offset: float  # of its middle from the roller-centre plane, along the axis (m)
-    width: float  # m
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,8 +31,6 @@ class DrawnCage:
     inertia: FloatArray  # about the centre at a density of 1, in the cage's frame (m5), shape (3, 3)
     tolerance: float  # largest distance between drawn faces and facets (m)
     plays: dict[str, float]  # radial, circumferential, axial (m); infinite where nothing is in the roller's way
-    rims: tuple[Rim, ...] = ()  # surfaces that a land can guide
-    recognised: tuple[Recognised, ...] = field(default=(), repr=False)  # all faces of the drawing
 
     def fields(self, density: float) -> dict[str, Any]:
         """Fields of `Cage`, for a density (kg/m3)."""

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.errors import FileError, InputError
-from trbdyn.model.drawn.cage import DrawnCage, Recognised, Rim
+from trbdyn.model.drawn.cage import DrawnCage
 from trbdyn.model.drawn.opened import Drawing, DrawnFace, opened
 from trbdyn.model.drawn.placing import Frustum, Place, axis_of, place_of, pockets_of
 from trbdyn.model.drawn.roller import REACHES
@@ -79,12 +79,7 @@ class _Reader:
         )
         place = self._settled(place_of(self.drawing, axis, found, roller))
         kinds, kind_of = self._kinds(place)
-        pockets, names = [], {}
-        for index in kinds:
-            pocket, of_face = self._pocket(place, index)
-            pockets.append(pocket)
-            names[len(pockets) - 1] = of_face
-        return self._cage(place, pockets, kind_of, names, kinds)
+        return self._cage(place, [self._pocket(place, index) for index in kinds], kind_of)
 
     # where the cage lies
 
@@ -132,7 +127,7 @@ class _Reader:
 
     # a pocket
 
-    def _pocket(self, place: Place, index: int) -> tuple[Pocket, dict[int, str]]:
+    def _pocket(self, place: Place, index: int) -> Pocket:
         surfaces = self.surfaces.of_pocket(place, index)
         faces = [face for _, parts in sorted(surfaces.items(), key=lambda item: item[1][0].slot) for face in parts]
         if not any(face.part == "flank" for face in faces):
@@ -147,7 +142,7 @@ class _Reader:
         if problems:
             at = self._of_face(place, index, faces[int(problems[0].path[1])])
             raise FileError(f"{self.drawing.path}: pocket {index}, {at}: {problems[0].allowed}")
-        return pocket, self._names_of_faces(place, index, surfaces)
+        return pocket
 
     def _of_face(self, place: Place, index: int, face: Face) -> str:
         """The face of the drawing that a face of a pocket comes from, in words."""
@@ -160,29 +155,6 @@ class _Reader:
         drawn = min(near, key=lambda pair: pair[0])[1]
         where = ", ".join(f"{1e3 * value:.4g}" for value in drawn.centre)
         return f"face {drawn.number} of the drawing ({drawn.kind}, at ({where}) mm)"
-
-    def _names_of_faces(self, place: Place, index: int, surfaces: dict[str, list[Face]]) -> dict[int, str]:
-        """Names of surfaces by the faces of the drawing."""
-        planes = [(name, face) for name, faces in surfaces.items() for face in faces]
-        found = {}
-        for drawn in self.surfaces.near_faces(place, index):
-            for facet in self.surfaces.facets(place, index, drawn):
-                if self.roller.meets(facet) is None:
-                    continue
-                middle = facet.corners.mean(axis=0)
-                close = min(
-                    planes,
-                    key=lambda pair: (
-                        float(pair[1].distance(middle)) + float(np.linalg.norm(pair[1].normal - facet.normal))
-                    ),
-                )
-                if (
-                    close[1].distance(middle) < self.roller.reach + 1.0
-                    and np.linalg.norm(close[1].normal - facet.normal) < 1e-6
-                ):
-                    found[drawn.number] = close[0]
-                    break
-        return found
 
     # pockets that differ
 
@@ -227,23 +199,9 @@ class _Reader:
 
     # the whole
 
-    def _cage(
-        self,
-        place: Place,
-        pockets: list[Pocket],
-        kind_of: tuple[int, ...],
-        names: dict[int, dict[int, str]],
-        kinds: list[int],
-    ) -> DrawnCage:
+    def _cage(self, place: Place, pockets: list[Pocket], kind_of: tuple[int, ...]) -> DrawnCage:
         most = max(range(len(pockets)), key=kind_of.count)
         centre = place.inside(self.drawing.centre)
-        recognised = []
-        for face in self.drawing.faces:
-            pocket, surface = -1, ""
-            for kind, index in enumerate(kinds):
-                if face.number in names[kind]:
-                    pocket, surface = index, names[kind][face.number]
-            recognised.append(Recognised(face, pocket, surface))
         return DrawnCage(
             path=self.drawing.path,
             n_pockets=self.count,
@@ -256,8 +214,6 @@ class _Reader:
             inertia=place.turn @ self.drawing.inertia @ place.turn.T,
             tolerance=self.tolerance,
             plays=self._plays(pockets[most]),
-            rims=self._rims(place),
-            recognised=tuple(recognised),
         )
 
     def _plays(self, pocket: Pocket) -> dict[str, float]:
@@ -272,20 +228,3 @@ class _Reader:
         walls = [face for face in pocket.faces if face.part == "small_end"]
         found["axial"] = self.roller.closing(walls, np.array([0.0, 0.0, -1.0]))
         return found
-
-    def _rims(self, place: Place) -> tuple[Rim, ...]:
-        """Cylinders about the axis over the whole circle."""
-        found = []
-        for face in self.drawing.faces:
-            if face.kind != "Cylinder" or not self._is_whole_ring(face, place):
-                continue
-            own = place.inside(face.triangles.reshape(-1, 3)).reshape(-1, 3, 3)
-            radii = np.hypot(own[..., 0], own[..., 1])
-            if np.ptp(radii) > self.tolerance:
-                continue
-            normal = np.cross(own[:, 1] - own[:, 0], own[:, 2] - own[:, 0])
-            middle = own.mean(axis=1)
-            side = "outer" if np.sum(normal[:, :2] * middle[:, :2]) > 0.0 else "inner"
-            low, high = float(own[..., 2].min()), float(own[..., 2].max())
-            found.append(Rim(side, float(radii.mean()), 0.5 * (low + high), high - low))
-        return tuple(found)
