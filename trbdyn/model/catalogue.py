@@ -14,13 +14,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from difflib import get_close_matches
-from inspect import signature
 from typing import Any, Final
 
 from trbdyn.base.validation import as_number, as_whole_number
 from trbdyn.errors import MISSING, InputError, Problem
 from trbdyn.model.assumed import ISO_LENGTH, ISO_LONG, ISO_SHORT, scaled
-from trbdyn.model.catalogue_cylinders import TYPES, check_cylindrical, usual_clearance, with_raceways
+from trbdyn.model.catalogue_cylinders import check_kind, usual_clearance, with_raceways
 from trbdyn.model.catalogue_rollers import MAKER, Page, Rollers, solve
 from trbdyn.model.core_table import PARAMETERS
 from trbdyn.model.estimated import Estimated
@@ -66,137 +65,98 @@ FATIGUE_SHARE: Final = (0.03, 0.3)
 """Cu over C0 of what can be meant: ISO 281 has 1/8.2 for small bearings and less for large ones."""
 
 
-def fields_from_catalogue(
-    *,
-    bore: Any = MISSING,
-    outside: Any = MISSING,
-    width: Any = MISSING,
-    C: Any = MISSING,
-    e: float | None = None,
-    Y: float | None = None,
-    C0: float | None = None,
-    Y0: float | None = None,
-    Cu: float | None = None,
-    cup_width: float | None = None,
-    n_rollers: int | None = None,
-    roller_diameter: float | None = None,
-    roller_length: float | None = None,
-    pitch_diameter: float | None = None,
-    contact_angle_deg: float | None = None,
-    cage_mass: float | None = None,
-    maker_factor: float | None = None,
-    reference_speed_rpm: float | None = None,
-    limiting_speed_rpm: float | None = None,
-    flanges: str | None = None,
-    F: float | None = None,
-    E: float | None = None,
-    radial_clearance: float | None = None,
-    name: str = "",
-    others: Mapping[str, Any] | None = None,
-) -> dict[str, Any]:
-    """Fields of a bearing from catalogue numbers; see `Bearing.from_catalogue`, which calls it."""
-    _known_names(others or {})
-    given = {"bore": bore, "outside": outside, "width": width, "C": C}
-    optional = {
-        "cup_width": cup_width,
-        "roller_diameter": roller_diameter,
-        "roller_length": roller_length,
-        "pitch_diameter": pitch_diameter,
-        "contact_angle_deg": contact_angle_deg,
-        "cage_mass": cage_mass,
-        "e": e,
-        "Y": Y,
-        "C0": C0,
-        "Y0": Y0,
-        "Cu": Cu,
-        "maker_factor": maker_factor,
-        "reference_speed_rpm": reference_speed_rpm,
-        "limiting_speed_rpm": limiting_speed_rpm,
-        "F": F,
-        "E": E,
-    }
-    for key, value in (given | {key: value for key, value in optional.items() if value is not None}).items():
-        _positive(key, value)
-    _check_dimensions(bore, outside, width)
+NUMBERS: Final = {
+    "bore": "m",
+    "outside": "m",
+    "width": "m",
+    "C": "N",
+    "cup_width": "m",
+    "roller_diameter": "m",
+    "roller_length": "m",
+    "pitch_diameter": "m",
+    "contact_angle_deg": "deg",
+    "cage_mass": "kg",
+    "e": "1",
+    "Y": "1",
+    "C0": "N",
+    "Y0": "1",
+    "Cu": "N",
+    "maker_factor": "1",
+    "reference_speed_rpm": "rpm",
+    "limiting_speed_rpm": "rpm",
+    "F": "m",
+    "E": "m",
+}
+"""Numbers of a catalogue page that are > 0, with their units; the first four are needed."""
+OTHERS: Final = ("n_rollers", "flanges", "radial_clearance", "name")
+"""What a page may tell besides."""
+
+
+def fields_from_catalogue(numbers: Mapping[str, Any]) -> dict[str, Any]:
+    """Fields of a bearing from a catalogue page, by the names of `Bearing.from_catalogue`; what is None was not given."""
+    _check_names(numbers)
+    given = {name: value for name, value in numbers.items() if value is not None}
+    for name in NUMBERS:
+        if name in given or name in ("bore", "outside", "width", "C"):
+            _positive(name, given.get(name, MISSING))
+    get = given.get
+    bore, C, C0, flanges = given["bore"], given["C"], get("C0"), get("flanges")
+    _check_dimensions(bore, given["outside"], given["width"])
     _check_share("C0", C0, "C", C, STATIC_SHARE)
     if C0 is not None:
-        _check_share("Cu", Cu, "C0", C0, FATIGUE_SHARE)
-    if n_rollers is not None:
-        _count(n_rollers)
-    if maker_factor is not None and not MAKER.low <= maker_factor <= MAKER.high:
-        raise InputError.of("maker_factor", maker_factor, f"must be from {MAKER.low:g} to {MAKER.high:g} (1)")
+        _check_share("Cu", get("Cu"), "C0", C0, FATIGUE_SHARE)
+    if "n_rollers" in given:
+        _count(given["n_rollers"])
+    if not MAKER.low <= get("maker_factor", 1.0) <= MAKER.high:
+        limit = f"must be from {MAKER.low:g} to {MAKER.high:g} (1)"
+        raise InputError.of("maker_factor", given["maker_factor"], limit)
+    check_kind(given)
     estimates: list[Estimated] = []
+    angle = 0.0
     if flanges is None:
-        _check_tapered({"F": F, "E": E, "radial_clearance": radial_clearance})
-        angle, angle_band = _angle(e, Y, contact_angle_deg)
-        if contact_angle_deg is None:
-            estimates.append(Estimated.of("cup_half_angle_deg", angle, *angle_band, "deg", _ANGLE_SOURCE))
-        page = Page(
-            bore,
-            outside,
-            width,
-            angle,
-            cup_width,
-            n_rollers,
-            roller_diameter,
-            roller_length,
-            pitch_diameter,
-            maker_factor,
-        )
-    else:
-        check_cylindrical(
-            flanges, {"e": e, "Y": Y, "Y0": Y0, "contact_angle_deg": contact_angle_deg, "cup_width": cup_width}
-        )
-        page = Page(
-            bore, outside, width, 0.0, None, n_rollers, roller_diameter, roller_length, pitch_diameter, maker_factor, C0
-        )
-        page, more = with_raceways(page, F, E)
+        angle, band = _angle(get("e"), get("Y"), get("contact_angle_deg"))
+        if "contact_angle_deg" not in given:
+            estimates.append(Estimated.of("cup_half_angle_deg", angle, *band, "deg", _ANGLE_SOURCE))
+    page = Page(
+        bore,
+        given["outside"],
+        given["width"],
+        angle,
+        cup_width=get("cup_width"),
+        n_rollers=get("n_rollers"),
+        diameter=get("roller_diameter"),
+        length=get("roller_length"),
+        pitch=get("pitch_diameter"),
+        maker_factor=get("maker_factor"),
+        static=None if flanges is None else C0,
+    )
+    if flanges is not None:
+        page, more = with_raceways(page, get("F"), get("E"))
         estimates += more
     _check_known(page)
     found, factor = solve(page, C)
     estimates += _roller_estimates(page, found, factor)
-    ratings = Ratings(
-        dynamic=C,
-        static=C0,
-        fatigue_limit=Cu,
-        e=e,
-        Y=Y,
-        Y0=Y0,
-        reference_speed_rpm=reference_speed_rpm,
-        limiting_speed_rpm=limiting_speed_rpm,
-    )
-    name = name or f"{1e3 * bore:g}x{1e3 * outside:g}x{1e3 * width:g}"
     cylinder = None
     if flanges is not None:
-        if radial_clearance is None:
+        if (clearance := get("radial_clearance")) is None:
             estimates.append(usual_clearance(bore))
-            radial_clearance = estimates[-1].value
-        cylinder = {"flanges": flanges, "radial_clearance": radial_clearance}
-    made = _fields(found, cage_mass, estimates, cylinder)
-    sizes = {"bore": float(bore), "outside": float(outside), "width": float(width)}
-    return made | {"name": name, **sizes, "ratings": ratings}
+            clearance = estimates[-1].value
+        cylinder = {"flanges": flanges, "radial_clearance": clearance}
+    sizes = {name: float(given[name]) for name in ("bore", "outside", "width")}
+    factors = ("e", "Y", "Y0", "reference_speed_rpm", "limiting_speed_rpm")
+    ratings = Ratings(dynamic=C, static=C0, fatigue_limit=get("Cu"), **{name: get(name) for name in factors})
+    name = get("name") or "x".join(f"{1e3 * size:g}" for size in sizes.values())
+    return _fields(found, get("cage_mass"), estimates, cylinder) | {"name": name, **sizes, "ratings": ratings}
 
 
-def _check_tapered(others: Mapping[str, float | None]) -> None:
-    for key, value in others.items():
-        if value is not None:
-            raise InputError.of(
-                key, value, f"must not be given without flanges: {', '.join(TYPES)} (docs/howto/cylindrical.md)"
-            )
-
-
-def _known_names(others: Mapping[str, Any]) -> None:
-    known = tuple(signature(fields_from_catalogue).parameters)
-    for key, value in others.items():
+def _check_names(numbers: Mapping[str, Any]) -> None:
+    known = (*NUMBERS, *OTHERS)
+    for key, value in numbers.items():
+        if key in known:
+            continue
         called, near = NAMES_OF_CATALOGUES.get(key), get_close_matches(key, known, 1)
-        hint = (
-            f"is called {called} here"
-            if called
-            else NOT_USED.get(key)
-            or (
-                f"is unknown: did you mean {near[0]}?" if near else "is no number of a catalogue page that is used here"
-            )
-        )
+        hint = f"is unknown: did you mean {near[0]}?" if near else "is no number of a catalogue page that is used here"
+        hint = f"is called {called} here" if called else NOT_USED.get(key, hint)
         raise InputError.of(key, value, f"{hint}; d, D and T are bore, outside and width (m), C and C0 are in N")
 
 
@@ -212,18 +172,7 @@ def _check_share(key: str, value: float | None, whole: str, size: float, share: 
 
 
 def _positive(key: str, value: object) -> None:
-    units = {
-        "C": "N",
-        "C0": "N",
-        "Cu": "N",
-        "Y0": "1",
-        "e": "1",
-        "Y": "1",
-        "contact_angle_deg": "deg",
-        "cage_mass": "kg",
-        "maker_factor": "1",
-    }
-    unit = "rpm" if key.endswith("_rpm") else units.get(key, "m")
+    unit = NUMBERS[key]
     if value is MISSING:
         raise InputError([Problem((key,), MISSING, f"must be given ({unit})")])
     try:

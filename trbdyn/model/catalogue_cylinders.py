@@ -7,7 +7,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Final
+from typing import Any, Final
 
 from trbdyn.errors import InputError
 from trbdyn.model.catalogue_rollers import Page
@@ -16,19 +16,26 @@ from trbdyn.model.tolerances import CLEARANCE_SIZES, clearance_limits
 
 TYPES: Final = ("NU", "NJ", "NUP", "N")
 """Types of cylindrical bearings (ISO 15)."""
+OF_CYLINDERS: Final[tuple[str, ...]] = ("F", "E", "radial_clearance")
+OF_CONES: Final[tuple[str, ...]] = ("e", "Y", "Y0", "contact_angle_deg", "cup_width")
+"""What a page of one kind of bearing tells, and one of the other kind does not."""
 AFTER_FIT: Final = 0.5
 """Share of that clearance that fits and warm shafts leave; assumed, between none and all of it."""
 
 
-def check_cylindrical(flanges: str, others: Mapping[str, float | None]) -> None:
-    if flanges not in TYPES:
-        raise InputError.of(
-            "flanges", flanges, f"must be one of {', '.join(TYPES)}, the type in ISO 15 (docs/howto/cylindrical.md)"
-        )
-    for key, value in others.items():
-        if value is not None:
-            limit = f"must not be given with flanges = {flanges!r}: a cylindrical bearing has none (docs/howto/cylindrical.md)"
-            raise InputError.of(key, value, limit)
+def check_kind(given: Mapping[str, Any]) -> None:
+    """Refuse a type that is unknown, and numbers that only the other kind of bearing has."""
+    flanges, more = given.get("flanges"), "(docs/howto/cylindrical.md)"
+    if flanges is None:
+        strange, limit = OF_CYLINDERS, f"must not be given without flanges: {', '.join(TYPES)} {more}"
+    elif flanges in TYPES:
+        strange = OF_CONES
+        limit = f"must not be given with flanges = {flanges!r}: a cylindrical bearing has none {more}"
+    else:
+        raise InputError.of("flanges", flanges, f"must be one of {', '.join(TYPES)}, the type in ISO 15 {more}")
+    for name in strange:
+        if name in given:
+            raise InputError.of(name, given[name], limit)
 
 
 def with_raceways(page: Page, F: float | None, E: float | None) -> tuple[Page, list[Estimated]]:

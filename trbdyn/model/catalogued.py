@@ -89,8 +89,10 @@ class Catalogued(Model):
         >>> print(bearing.estimated[0])
         cup_half_angle_deg = 16 deg (15.82 to 16.17): tan(alpha) = e/1.5 (ISO 281), e as rounded in the catalogue
         """
-        given = {name: value for name, value in locals().items() if name not in ("cls", "others")}
-        return cls(**fields_from_catalogue(**given, others=others))
+        given = {
+            name: value for name, value in locals().items() if name not in ("cls", "others") and value is not MISSING
+        }
+        return cls(**fields_from_catalogue(given | others))
 
     @classmethod
     def named(cls, designation: str, *, table: str | pathlib.Path | None = None, **known: Any) -> Self:

@@ -95,7 +95,7 @@ class Designation(Tabled):
             page.pop("e", None), page.pop("Y", None)
         value, low, high = self._guess
         guess = {} if told else {"contact_angle_deg": _angle(value)}
-        made = fields_from_catalogue(**{**page, "name": self.name, **guess, **known})
+        made = fields_from_catalogue({**page, "name": self.name, **guess, **known})
         self._check_rating(made["cup_half_angle_deg"])
         if not told:
             words = "e as recalled from makers' catalogues" if self.recalled_e is not None else "e not known: usual one"
