@@ -39,21 +39,8 @@ def _polar(ax: Axes | None, title: str, size: tuple[float, float] = (5.2, 5.2)) 
 
 
 def binned(angle: Array, values: Array, bins: int) -> tuple[Array, Array, Array, Array]:
-    """Mean, smallest and largest of values in bins of the angle around the bearing.
-
-    Parameters
-    ----------
-    angle : ndarray
-        Places (rad).
-    values : ndarray, same shape
-        Values.
-    bins : int
-        Number of bins.
-
-    Returns
-    -------
-    place, mean, low, high : ndarray, shape (n,)
-        Middles of the bins that hold something (rad), and mean, smallest and largest value there.
+    """Values at angles around the bearing (rad) in bins: the middles of those that hold something (rad), and the mean, smallest
+    and largest value there.
     """
     number = (np.mod(angle, 2.0 * np.pi) / (2.0 * np.pi) * bins).astype(int).ravel() % bins
     count = np.bincount(number, minlength=bins)
@@ -67,15 +54,6 @@ def binned(angle: Array, values: Array, bins: int) -> tuple[Array, Array, Array,
 
 def load_zone(result: Result, ax: Axes | None = None, last: float | None = None, bins: int = 72) -> Axes:
     """Load distribution around the bearing (polar): mean load of a roller at each place, with its range.
-
-    Parameters
-    ----------
-    ax : Axes, optional
-        Polar axes to draw into.
-    last : float, optional
-        Number of last shaft revolutions to use; all by default.
-    bins : int
-        Number of places around the bearing.
 
     Examples
     --------
@@ -98,26 +76,19 @@ def load_zone(result: Result, ax: Axes | None = None, last: float | None = None,
             ax.plot(around[0], around[1], color=COLOURS[index], linestyle=LINES[index], label=label)
             ax.fill_between(around[0], around[2], around[3], color=COLOURS[index], alpha=0.2, linewidth=0)
         ax.set_ylim(bottom=0)
-        _angles(ax)
+        name_angles(ax)
         ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06), ncols=1)
     return ax
 
 
-def _angles(ax: Any) -> None:
+def name_angles(ax: Any) -> None:
+    """Name the directions of a picture around the bearing."""
     ax.set_thetagrids(range(0, 360, 45), ["x", "45°", "y", "135°", "-x", "225°", "-y", "315°"])
     ax.set_rlabel_position(22.5)
 
 
 def attitude(result: Result, last: float | None = None, bins: int = 72) -> Figure:
-    """Skew and tilt of the rollers over their place around the bearing: mean and range.
-
-    Parameters
-    ----------
-    last : float, optional
-        Number of last shaft revolutions to use; all by default.
-    bins : int
-        Number of places around the bearing.
-    """
+    """Skew and tilt of the rollers over their place around the bearing: mean and range."""
     shown = last_turns(result, last)
     orbit = shown["roller_orbit_angle"]
     with styled():
@@ -139,15 +110,7 @@ def attitude(result: Result, last: float | None = None, bins: int = 72) -> Figur
 
 
 def pocket_polar(result: Result, ax: Axes | None = None, threshold: float = 0.0) -> Axes:
-    """Force in each pocket (polar): peak and 95th percentile while it is touched, a group of bars for each pocket.
-
-    Parameters
-    ----------
-    ax : Axes, optional
-        Polar axes to draw into.
-    threshold : float
-        Force above which a face counts as touched (N).
-    """
+    """Force in each pocket (polar): peak and 95th percentile while it is touched, a group of bars for each pocket."""
     statistics = result.pocket_statistics(threshold)
     count = statistics.peak.shape[0]
     touched = np.flatnonzero(statistics.peak.max(axis=0) > threshold).tolist()
@@ -202,10 +165,6 @@ def contact_map(
         What is shown.
     sides : sequence of {'outer', 'inner'}
         Raceways.
-    records : int
-        Number of records to use, spread over the run.
-    bins : int
-        Number of places around the bearing.
 
     Raises
     ------

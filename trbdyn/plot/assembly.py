@@ -17,9 +17,11 @@ from trbdyn.errors import InputError
 from trbdyn.model.assembly import Assembly, ShaftBearing
 from trbdyn.model.motion import value_at
 from trbdyn.model.outlines import cone_outline, cup_outline
+from trbdyn.plot.around import name_angles
 from trbdyn.plot.cage import revolutions, turns_label
 from trbdyn.plot.drawing import ROLLER, STEEL, placed, roller_outline
-from trbdyn.plot.style import COLOURS, GREY, LIGHT, LINES, canvas, legend, line, plain, sequence, styled
+from trbdyn.plot.ring import draw_motion, draw_path
+from trbdyn.plot.style import COLOURS, GREY, LIGHT, LINES, canvas, legend, line, plain, styled
 from trbdyn.statics.assembly import ShaftEquilibrium, equilibrium
 from trbdyn.statics.preload import PreloadDiagram
 from trbdyn.statics.preload import preload_diagram as diagram_of
@@ -39,12 +41,6 @@ def preload_diagram(diagram: PreloadDiagram, ax: Axes | None = None) -> Axes:
     ----------
     diagram : PreloadDiagram
         What `trbdyn.preload_diagram` gave.
-    ax : Axes, optional
-        Axes to draw into.
-
-    Returns
-    -------
-    Axes
     """
     with canvas(ax, title="Preload diagram") as ax:
         place = 1e6 * diagram.displacement
@@ -68,10 +64,6 @@ def load_zones(found: ShaftEquilibrium) -> Figure:
     ----------
     found : ShaftEquilibrium
         What `trbdyn.equilibrium` gave.
-
-    Returns
-    -------
-    Figure
     """
     with styled():
         count = len(found.bearings)
@@ -87,8 +79,7 @@ def load_zones(found: ShaftEquilibrium) -> Figure:
                 style = {"color": COLOURS[index], "linestyle": LINES[index], "marker": "o", "markersize": 3.0}
                 ax.plot(around, values, label=f"{label}, {load.min():.4g} to {load.max():.4g} N", **style)
             ax.set_ylim(0.0, 1.05 * largest)
-            ax.set_thetagrids(range(0, 360, 45), ["x", "45°", "y", "135°", "-x", "225°", "-y", "315°"])
-            ax.set_rlabel_position(22.5)
+            name_angles(ax)
             ax.set_title(f"{one.name}: $F_a$ {one.axial_load:.4g} N, $F_r$ {one.radial_load:.4g} N")
             ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.08))
         figure.suptitle("Loads of the rollers (N)", fontsize=11)
@@ -102,12 +93,6 @@ def shaft_drawing(assembly: Assembly, ax: Axes | None = None) -> Axes:
     ----------
     assembly : Assembly
         The assembly.
-    ax : Axes, optional
-        Axes to draw into.
-
-    Returns
-    -------
-    Axes
 
     Examples
     --------
@@ -230,17 +215,9 @@ def shaft_orbits(result: AssemblyResult) -> Figure:
         figure.suptitle("Path of the shaft's axis at its bearings", fontsize=11)
         for ax, (name, one), bearing in zip(axes[0], result.items(), assembly.bearings, strict=True):
             place = 1e6 * result.shaft_displacement(bearing.centre_plane)[:, :2]
-            mean = place.mean(axis=0)
-            path = place - mean
-            points = ax.scatter(*path.T, c=revolutions(one), s=3, cmap=sequence(), linewidths=0)
-            ax.plot(*path.T, color=GREY, linewidth=0.4, zorder=0)
-            ax.set(
-                title=name,
-                xlabel=f"x from its mean, {mean[0]:.3g} µm (µm)",
-                ylabel=f"y from its mean, {mean[1]:.3g} µm (µm)",
-            )
+            points = draw_path(ax, place, revolutions(one))
+            ax.set_title(name)
             ax.set_aspect("equal", adjustable="datalim")
-            ax.locator_params(nbins=5)
         figure.colorbar(points, ax=list(axes[0]), label=turns_label(one), location="bottom", shrink=0.6, aspect=40)
     return figure
 
@@ -253,22 +230,8 @@ def shaft_motion(result: AssemblyResult) -> Figure:
     result : AssemblyResult
         Needs the group ring.
     """
-    one = next(iter(result.values()))
-    turned, place, axis = revolutions(one), 1e6 * result.shaft_position, 1e3 * result.shaft_axis
-    with styled():
-        figure, axes = plt.subplots(3, 1, figsize=(6.4, 5.6), sharex=True)
-        figure.suptitle("Motion of the shaft", fontsize=11)
-        for index, name in enumerate("xy"):
-            line(axes[0], turned, place[:, index], 2 * index, name, linestyle=("-", "--")[index])
-        line(axes[1], turned, place[:, 2], 0)
-        for index, (name, values) in enumerate((("x", -axis[:, 1]), ("y", axis[:, 0]))):
-            line(axes[2], turned, values, 2 * index, f"about {name}", linestyle=("-", "--")[index])
-        axes[0].set_ylabel("across (µm)")
-        axes[1].set_ylabel("axial, z (µm)")
-        axes[2].set(ylabel="tilt (mrad)", xlabel=turns_label(one), xlim=(turned[0], turned[-1]))
-        for ax in (axes[0], axes[2]):
-            ax.legend(fontsize=8, loc="best", frameon=True, framealpha=0.85, edgecolor="none")
-    return figure
+    tilt = result.shaft_axis[:, [1, 0]] * [-1.0, 1.0]
+    return draw_motion("Motion of the shaft", result.parts[0], result.shaft_position, tilt, "across")
 
 
 def _known(result: AssemblyResult) -> Assembly:

@@ -159,13 +159,7 @@ def axial_motion(result: Result, ax: Axes | None = None) -> Axes:
 
 
 def tilt(result: Result, ax: Axes | None = None, last: float | None = 12.0) -> Axes:
-    """Tilt of the cage's axis, theta_x and theta_y, over the turns of the shaft.
-
-    Parameters
-    ----------
-    last : float or None
-        Number of last shaft revolutions to show; None shows all.
-    """
+    """Tilt of the cage's axis, theta_x and theta_y, over the turns of the shaft."""
     need_cage(result)
     shown = last_turns(result, last)
     with canvas(ax, (6.4, 3.4), "Tilt of the cage's axis") as ax:
@@ -194,8 +188,6 @@ def spectrum(result: Result, ax: Axes | None = None, orders: float = 4.0, segmen
         Needs the groups time and cage; best after settling.
     orders : float
         Highest order to show; negative orders are backward whirl.
-    segments : int
-        Number of segments to average.
     """
     need_cage(result)
     path = result.cage_locus()

@@ -25,15 +25,8 @@ STARTED: Final = {"equal": "from rest in the middle", "whirl": "from a large whi
 
 
 def draw_map(data: xarray.Dataset) -> Any:
-    """Draw a map for each start: a field for each speed and load, coloured by class, with the orbit over the radial play and the
-    hits in a second.
-
-    Fields of runs that were not decided are hatched.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        `CageMap.data`.
+    """Draw `CageMap.data`: a map for each start, a field for each speed and load, coloured by class, with the orbit over the
+    radial play and the hits in a second. Fields of runs that were not decided are hatched.
     """
     starts, loads, speeds = (data[name].values for name in ("start", "axial_load", "speed_rpm"))
     width = 1.6 + 0.75 * len(speeds)

@@ -10,23 +10,36 @@ from typing import Any, Final
 
 from trbdyn.base.expected import expect
 
+SHARED: Final = {
+    entry.partition(" : ")[0]: entry
+    for entry in (
+        "along : {'x', 'y', 'z'}\n    Direction.",
+        "ax : Axes, optional\n    Axes to draw into.",
+        "bearing : Bearing\n    The bearing.",
+        "bins : int\n    Number of places around the bearing.",
+        "last : float or None\n    Number of last shaft revolutions to show; None shows all.",
+        "on : {'cage', 'outer_ring'}\n    The body.",
+        "once_per : {'cage', 'shaft', 'roller'}\n    A turn of the cage, a turn of the shaft, or a pitch of the cage (the next roller "
+        "at the same place).",
+        "pocket : int\n    Number of the pocket, 0 to Z - 1.",
+        "records : int\n    Number of records to use, spread over the run.",
+        "ring : {'inner', 'outer'}\n    Which ring: the outer one where it moves with a housing.",
+        "segments : int\n    Number of segments to average.",
+        "threshold : float\n    Force above which a face counts as touched (N).",
+    )
+}
+"""Arguments that several pictures have: each is described once."""
 SECTION: Final = re.compile(r"\n*^(Parameters|Returns|Raises|Examples)\n-+\n", re.MULTILINE)
 
 
 def describe(draw: Callable[..., Any], groups: Sequence[str]) -> None:
-    """Complete the description of a picture: the result with the groups that it needs, the axes, and what is returned.
-
-    Parameters
-    ----------
-    draw : callable
-        The function that draws; what its description has already is left as it is.
-    groups : sequence of str
-        Groups that the result must have beside the group time.
+    """Complete the description of a picture: the result with the groups that it needs beside the group time, arguments that
+    several pictures have, and what is returned. What its description has already is left as it is.
     """
     signature = inspect.signature(draw)
     words, *parts = SECTION.split(inspect.cleandoc(draw.__doc__ or ""))
     sections = dict(zip(parts[::2], parts[1::2], strict=True))
-    known = {"ax": "ax : Axes, optional\n    Axes to draw into."}
+    known = dict(SHARED)
     if groups:
         known["result"] = (
             f"result : Result\n    Needs the groups {' and '.join([', '.join(['time', *groups[:-1]]), groups[-1]])}."

@@ -41,11 +41,6 @@ STEEL, ROLLER, _CAGE = "#DCE1E6", "#F1F3F5", "#E8CF9B"
 def bearing_drawing(bearing: Bearing, ax: Axes | None = None) -> Axes:
     """The bearing in section, with its main dimensions.
 
-    Parameters
-    ----------
-    bearing : Bearing
-        The bearing.
-
     Examples
     --------
     >>> import trbdyn as trb
@@ -149,13 +144,6 @@ def _dimensions(bearing: Bearing, ax: Axes) -> None:
 def pocket_drawing(bearing: Bearing, pocket: int = 0) -> Figure:
     """A pocket of the cage with its roller: seen along the roller's axis, and from outside.
 
-    Parameters
-    ----------
-    bearing : Bearing
-        The bearing.
-    pocket : int
-        Number of the pocket, 0 to Z - 1.
-
     Raises
     ------
     InputError
@@ -203,17 +191,6 @@ def pocket_drawing(bearing: Bearing, pocket: int = 0) -> Figure:
 
 def cage_drawing(bearing: Bearing, pocket: int = 0) -> Figure:
     """A pocket in the drawing that its cage comes from, and beside it the surfaces that were recognised in it.
-
-    Parameters
-    ----------
-    bearing : Bearing
-        Its cage comes from a STEP file (`Cage.from_step`).
-    pocket : int
-        Number of the pocket, 0 to Z - 1.
-
-    Returns
-    -------
-    Figure
 
     Raises
     ------
@@ -291,12 +268,6 @@ def profile_trace(trace: Trace, ax: Axes | None = None) -> Axes:
     ----------
     trace : Trace
         What `trbdyn.read_trace` gave.
-    ax : Axes, optional
-        Axes to draw into.
-
-    Returns
-    -------
-    Axes
     """
     with canvas(ax, (7.2, 4.2), "Profile: levelled trace and the profile used") as ax:
         points, heights, out = 1e3 * trace.points, 1e6 * trace.heights, trace.outlier

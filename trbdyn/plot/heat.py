@@ -12,12 +12,8 @@ from trbdyn.plot.style import COLOURS, GREY, MARKERS, plain, styled
 
 
 def draw_balance(balances: Sequence[Any]) -> Any:
-    """Draw the power that is lost over the temperature of films, the point where it balances, and all temperatures.
-
-    Parameters
-    ----------
-    balances : sequence of Thermal
-        What `trbdyn.thermal` gave, one for each bearing.
+    """Draw what `trbdyn.thermal` gave, a row for each bearing: the power that is lost over the temperature of films, the point
+    where it balances, and all temperatures.
     """
     with styled():
         size = (10.0, 4.0 * len(balances))

@@ -11,13 +11,7 @@ from trbdyn.plot.style import COLOURS, GREY, LINES, styled
 
 
 def draw_preload_over(found: Any) -> Any:
-    """Draw play with its band, axial loads, torque and life over the temperature.
-
-    Parameters
-    ----------
-    found : PreloadOver
-        What `trbdyn.preload_over` gave.
-    """
+    """Draw play with its band, axial loads, torque and life of a `PreloadOver` over the temperature."""
     rows, where = found.rows, "temperature outside (°C)" if found.outside else "temperature (°C)"
     at = np.array([row.temperature_c for row in rows])
     with styled():

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Literal
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from trbdyn.errors import InputError
 from trbdyn.plot.cage import last_turns, revolutions, turns_label
@@ -17,19 +19,14 @@ from trbdyn.results import observables
 if TYPE_CHECKING:
     from trbdyn.results.result import Result
 
+Array = NDArray[np.float64]
 Ring = Literal["inner", "outer"]
 
 __all__ = ["ring_motion", "ring_orbit", "ring_orders", "ring_spectrum"]
 
 
 def _ring_of(ring: Ring) -> tuple[str, str]:
-    """Group of fields of a ring, and its name in titles.
-
-    Raises
-    ------
-    InputError
-        If there is no such ring.
-    """
+    """Group of fields of a ring, and its name in titles."""
     known: dict[str, tuple[str, str]] = {
         "inner": ("ring", "inner ring"),
         "outer": ("housing", "outer ring with its housing"),
@@ -46,29 +43,26 @@ def ring_orbit(result: Result, ax: Axes | None = None, last: float | None = 12.0
     ----------
     result : Result
         Needs the groups time and ring, or housing for the outer ring.
-    last : float or None
-        Number of last shaft revolutions to show; None shows all.
-    ring : {'inner', 'outer'}
-        Which ring: the outer one where it moves with a housing.
     """
     group, name = _ring_of(ring)
     shown = last_turns(result, last)
-    place = 1e6 * shown[f"{group}_position"][:, :2]
-    mean, turned = place.mean(axis=0), revolutions(shown)
     with canvas(ax, (5.2, 4.4), f"Path of the centre of the {name}") as ax:
-        path = place - mean
-        points = ax.scatter(path[:, 0], path[:, 1], c=turned, s=3, cmap=sequence(), linewidths=0)
-        ax.plot(path[:, 0], path[:, 1], color=GREY, linewidth=0.4, zorder=0)
+        points = draw_path(ax, 1e6 * shown[f"{group}_position"][:, :2], revolutions(shown))
         ax.axhline(0, color=GREY, linewidth=0.6)
         ax.axvline(0, color=GREY, linewidth=0.6)
-        ax.set(
-            xlabel=f"x from its mean, {mean[0]:.3g} µm (µm)",
-            ylabel=f"y from its mean, {mean[1]:.3g} µm (µm)",
-            aspect="equal",
-        )
-        ax.locator_params(nbins=5)
+        ax.set_aspect("equal")
         ax.figure.colorbar(points, ax=ax, label=turns_label(result))
     return ax
+
+
+def draw_path(ax: Axes, place: Array, turned: Array) -> PathCollection:
+    """The path of a point across the axis, shape (T, 2) (µm), about its mean place, coloured by the turns of the shaft."""
+    mean = place.mean(axis=0)
+    path = place - mean
+    ax.plot(*path.T, color=GREY, linewidth=0.4, zorder=0)
+    ax.set(xlabel=f"x from its mean, {mean[0]:.3g} µm (µm)", ylabel=f"y from its mean, {mean[1]:.3g} µm (µm)")
+    ax.locator_params(nbins=5)
+    return ax.scatter(*path.T, c=turned, s=3, cmap=sequence(), linewidths=0)
 
 
 def ring_motion(result: Result, last: float | None = None, *, ring: Ring = "inner") -> Figure:
@@ -78,22 +72,24 @@ def ring_motion(result: Result, last: float | None = None, *, ring: Ring = "inne
     ----------
     result : Result
         Needs the groups time and ring, or housing for the outer ring.
-    last : float or None
-        Number of last shaft revolutions to show; None shows all.
-    ring : {'inner', 'outer'}
-        Which ring: the outer one where it moves with a housing.
     """
     group, title = _ring_of(ring)
     shown = last_turns(result, last)
-    turned, place, tilt = revolutions(shown), 1e6 * shown[f"{group}_position"], 1e3 * shown[f"{group}_tilt"]
+    place, tilt = shown[f"{group}_position"], shown[f"{group}_tilt"]
+    return draw_motion(f"Motion of the {title}", shown, place, tilt, "radial")
+
+
+def draw_motion(title: str, result: Result, place: Array, tilt: Array, across: str) -> Figure:
+    """Place (m), shape (T, 3), and tilt about x and y (rad), shape (T, 2), over the turns of the shaft."""
+    turned = revolutions(result)
     with styled():
         figure, axes = plt.subplots(3, 1, figsize=(6.4, 5.6), sharex=True)
-        figure.suptitle(f"Motion of the {title}", fontsize=11)
+        figure.suptitle(title, fontsize=11)
         for index, name in enumerate("xy"):
-            line(axes[0], turned, place[:, index], 2 * index, name, linestyle=("-", "--")[index])
-            line(axes[2], turned, tilt[:, index], 2 * index, f"about {name}", linestyle=("-", "--")[index])
-        line(axes[1], turned, place[:, 2], 0)
-        axes[0].set_ylabel("radial (µm)")
+            line(axes[0], turned, 1e6 * place[:, index], 2 * index, name, linestyle=("-", "--")[index])
+            line(axes[2], turned, 1e3 * tilt[:, index], 2 * index, f"about {name}", linestyle=("-", "--")[index])
+        line(axes[1], turned, 1e6 * place[:, 2], 0)
+        axes[0].set_ylabel(f"{across} (µm)")
         axes[1].set_ylabel("axial, z (µm)")
         axes[2].set(ylabel="tilt (mrad)", xlabel=turns_label(result), xlim=(turned[0], turned[-1]))
         for ax in (axes[0], axes[2]):
@@ -149,14 +145,8 @@ def ring_spectrum(
         lies in the highest octave of the records.
     of : {'displacement', 'velocity', 'acceleration'}
         What of the vibration.
-    along : {'x', 'y', 'z'}
-        Its direction.
     orders : float
         Highest order to show.
-    segments : int
-        Number of segments to average.
-    ring : {'inner', 'outer'}
-        Which ring: the outer one where it moves with a housing.
 
     Raises
     ------

@@ -73,8 +73,6 @@ def pocket_forces(result: Result, pockets: Sequence[int] | None = None, last: fl
     ----------
     pockets : sequence of int, optional
         Pockets to show, from 0; all by default.
-    last : float or None
-        Number of last shaft revolutions to show; None shows all.
     """
     need_cage(result)
     shown = last_turns(result, last)
@@ -123,13 +121,7 @@ def pocket_forces(result: Result, pockets: Sequence[int] | None = None, last: fl
 
 
 def pocket_statistics(result: Result, ax: Axes | None = None, threshold: float = 0.0) -> Axes:
-    """Force of each pocket and face: 95th percentile while in contact (filled) and peak (open), with the duty of each face.
-
-    Parameters
-    ----------
-    threshold : float
-        Force above which a face counts as touched, N.
-    """
+    """Force of each pocket and face: 95th percentile while in contact (filled) and peak (open), with the duty of each face."""
     need_cage(result)
     stats = result.pocket_statistics(threshold)
     touched = np.flatnonzero(stats.peak.max(axis=0) > 0).tolist()

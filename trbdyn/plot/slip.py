@@ -11,12 +11,8 @@ from trbdyn.plot.style import COLOURS, GREY, LINES, MARKERS, plain, styled
 
 
 def draw_least_load(found: Any) -> Any:
-    """Draw the slip of the cage and the power per area of entering rollers over the load, with the least loads.
-
-    Parameters
-    ----------
-    found : LeastLoad
-        What `trbdyn.least_load` gave.
+    """Draw the slip of the cage and the power per area of entering rollers of a `LeastLoad` over the load, with the least
+    loads.
     """
     data, number = found.data, 0
     with styled():

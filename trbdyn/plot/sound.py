@@ -30,12 +30,6 @@ def force_spectrum(
     ----------
     result : Result
         Needs the group cage; rollers and peaks for the outer ring.
-    on : {'cage', 'outer_ring'}
-        The body.
-    along : {'x', 'y', 'z'}
-        Direction.
-    segments : int
-        Number of segments to average.
     highest : float, optional
         Highest frequency to show (Hz); half of that of the records by default.
     """
@@ -67,10 +61,6 @@ def octave_levels(
     ----------
     result : Result
         Needs the group cage; rollers and peaks for the outer ring.
-    on : {'cage', 'outer_ring'}
-        The body.
-    along : {'x', 'y', 'z'}
-        Direction.
     fraction : {1, 3}
         1: octaves; 3: third octaves.
     """

@@ -166,15 +166,7 @@ def plain(text: str) -> str:
 
 
 def write(figure: Figure, path: str | os.PathLike[str], *, overwrite: bool) -> Path:
-    """Write a figure; the ending of the file gives the format.
-
-    Raises
-    ------
-    InputError
-        If no picture has this ending.
-    FileError
-        If the file is there and shall not be replaced, or cannot be written.
-    """
+    """Write a figure; the ending of the file gives the format."""
     formats = [f".{name}" for name in figure.canvas.get_supported_filetypes()]
     target, picture = output_path(path, overwrite=overwrite, field="path", endings=formats), io.BytesIO()
     try:

@@ -14,16 +14,8 @@ if TYPE_CHECKING:
 
 
 def draw_map(data: xarray.Dataset, temperature: int | None = None) -> Any:
-    """Draw torque over speed: a line for each load and temperature, and what loses the torque of the last of them.
-
-    Points whose torque has not settled are hollow.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        `TorqueMap.data`.
-    temperature : int, optional
-        The one temperature to draw, by its place; all by default.
+    """Draw `TorqueMap.data` over speed: a line for each load and temperature (or for one, by its place), and what loses the
+    torque of the last of them. Points whose torque has not settled are hollow.
     """
     chosen = range(data.sizes["temperature_c"]) if temperature is None else [temperature]
     lines = [data.isel(temperature_c=t, load=k).sortby("speed_rpm") for t in chosen for k in range(data.sizes["load"])]

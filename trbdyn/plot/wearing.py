@@ -22,10 +22,6 @@ def wear_map(found: xarray.Dataset) -> Figure:
     found : xarray.Dataset
         Of `trbdyn.wear`.
 
-    Returns
-    -------
-    Figure
-
     Examples
     --------
     >>> import trbdyn as trb

@@ -24,19 +24,9 @@ Array = NDArray[np.float64]
 
 
 def section_points(result: Result, once_per: Literal["cage", "shaft", "roller"] = "cage") -> Array:
-    """Places of the cage's centre, in units of Cpr, each time a body has turned once more.
+    """Places of the cage's centre, in units of Cpr, each time a body has turned once more: between records, shape (n, 2).
 
-    Parameters
-    ----------
-    result : Result
-        Needs the groups time and cage.
-    once_per : {'cage', 'shaft', 'roller'}
-        A turn of the cage, a turn of the shaft, or a pitch of the cage (the next roller at the same place).
-
-    Returns
-    -------
-    ndarray, shape (n, 2)
-        Interpolated between records.
+    A turn of the cage, a turn of the shaft, or a pitch of the cage (the next roller at the same place).
     """
     periods = {"cage": 2.0 * np.pi, "shaft": 2.0 * np.pi, "roller": 2.0 * np.pi / result.scene.bearing.n_rollers}
     if once_per not in periods:
@@ -53,11 +43,6 @@ def poincare(result: Result, ax: Axes | None = None, once_per: Literal["cage", "
 
     A whirl that repeats itself with the turn gives one point, one with a second frequency a closed curve, a chaotic
     one a cloud.
-
-    Parameters
-    ----------
-    once_per : {'cage', 'shaft', 'roller'}
-        See `section_points`.
 
     Examples
     --------
