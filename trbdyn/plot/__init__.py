@@ -4,11 +4,12 @@ Every function takes a `Result`, and axes to draw into (``ax=``) unless it needs
 the figure, back. The style holds for the new picture only: nothing global is changed, and no window is opened.
 """
 
+# ruff: isort: skip_file
 from __future__ import annotations
 
 import inspect
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Final
@@ -17,86 +18,66 @@ import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from trbdyn.base.expected import expect
 from trbdyn.base.own_files import folder_path, output_path
 from trbdyn.errors import FileError, InputError, unknown_name
-from trbdyn.plot.around import attitude, contact_map, film_map, load_zone, pocket_polar, pressure_map
-from trbdyn.plot.assembly import (
-    bearing_loads,
-    load_zones,
-    preload_diagram,
-    shaft_drawing,
-    shaft_motion,
-    shaft_orbits,
+from trbdyn.plot import described, style
+from trbdyn.plot.around import (
+    attitude as attitude,
+    contact_map as contact_map,
+    film_map as film_map,
+    load_zone as load_zone,
+    pocket_polar as pocket_polar,
+    pressure_map as pressure_map,
 )
-from trbdyn.plot.assembly import of_result as of_assembly
-from trbdyn.plot.cage import axial_motion, cage_locus, orbit_radius, spectrum, tilt, whirl_map
-from trbdyn.plot.contact_line import contact_line
-from trbdyn.plot.described import describe, of_its_kind
-from trbdyn.plot.drawing import bearing_drawing, cage_drawing, pocket_drawing, profile_trace
-from trbdyn.plot.elastic import cage_shape, cage_stress
-from trbdyn.plot.energy import energy_audit, power_split, torque_split
-from trbdyn.plot.ring import ring_motion, ring_orbit, ring_orders, ring_spectrum
-from trbdyn.plot.rollers import contact_loads, film_parameter, pocket_forces, pocket_statistics, spacing_angles
-from trbdyn.plot.sound import force_spectrum, octave_levels
-from trbdyn.plot.style import STYLE, plain, styled, write
-from trbdyn.plot.wearing import wear_map
-from trbdyn.plot.whirling import poincare, torque_sources, waterfall
-from trbdyn.results.assembly import AssemblyResult
+from trbdyn.plot.assembly import (
+    bearing_loads as bearing_loads,
+    load_zones as load_zones,
+    preload_diagram as preload_diagram,
+    shaft_drawing as shaft_drawing,
+    shaft_motion as shaft_motion,
+    shaft_orbits as shaft_orbits,
+)
+from trbdyn.plot.cage import (
+    axial_motion as axial_motion,
+    cage_locus as cage_locus,
+    orbit_radius as orbit_radius,
+    spectrum as spectrum,
+    tilt as tilt,
+    whirl_map as whirl_map,
+)
+from trbdyn.plot.contact_line import contact_line as contact_line
+from trbdyn.plot.drawing import (
+    bearing_drawing as bearing_drawing,
+    cage_drawing as cage_drawing,
+    pocket_drawing as pocket_drawing,
+    profile_trace as profile_trace,
+)
+from trbdyn.plot.elastic import cage_shape as cage_shape, cage_stress as cage_stress
+from trbdyn.plot.energy import energy_audit as energy_audit, power_split as power_split, torque_split as torque_split
+from trbdyn.plot.ring import (
+    ring_motion as ring_motion,
+    ring_orbit as ring_orbit,
+    ring_orders as ring_orders,
+    ring_spectrum as ring_spectrum,
+)
+from trbdyn.plot.rollers import (
+    contact_loads as contact_loads,
+    film_parameter as film_parameter,
+    pocket_forces as pocket_forces,
+    pocket_statistics as pocket_statistics,
+    spacing_angles as spacing_angles,
+)
+from trbdyn.plot.sound import force_spectrum as force_spectrum, octave_levels as octave_levels
+from trbdyn.plot.wearing import wear_map as wear_map
+from trbdyn.plot.whirling import poincare as poincare, torque_sources as torque_sources, waterfall as waterfall
+from trbdyn.plot.assembly import of_result as _of_shaft
+from trbdyn.plot.style import STYLE as STYLE
+from trbdyn.results.assembly import AssemblyResult, by_name
 from trbdyn.results.conditions import ranges, spoken
 from trbdyn.results.result import Result
 
-__all__ = [
-    "PICTURES",
-    "STYLE",
-    "all",
-    "attitude",
-    "axial_motion",
-    "bearing_drawing",
-    "bearing_loads",
-    "cage_drawing",
-    "cage_locus",
-    "cage_shape",
-    "cage_stress",
-    "conditions",
-    "contact_line",
-    "contact_loads",
-    "contact_map",
-    "drawable",
-    "energy_audit",
-    "film_map",
-    "film_parameter",
-    "force_spectrum",
-    "load_zone",
-    "load_zones",
-    "make_folder",
-    "octave_levels",
-    "orbit_radius",
-    "pocket_drawing",
-    "pocket_forces",
-    "pocket_polar",
-    "pocket_statistics",
-    "poincare",
-    "power_split",
-    "preload_diagram",
-    "pressure_map",
-    "profile_trace",
-    "ring_motion",
-    "ring_orbit",
-    "ring_orders",
-    "ring_spectrum",
-    "save",
-    "shaft_drawing",
-    "shaft_motion",
-    "shaft_orbits",
-    "spacing_angles",
-    "spectrum",
-    "tilt",
-    "torque_sources",
-    "torque_split",
-    "waterfall",
-    "wear_map",
-    "whirl_map",
-]
+__all__ = ["PICTURES", "STYLE", "all", "conditions", "drawable", "make_folder", "save"]
 
 
 def __dir__() -> list[str]:
@@ -130,12 +111,12 @@ GROUPS: Final[dict[str, tuple[str, ...]]] = {
 """Groups that the pictures of one result need; those of the group ring are of a ring that moves by itself."""
 
 _KINDS: Final = {"Result": Result, "AssemblyResult": AssemblyResult}
-for _name in __all__:
-    _draw = globals().get(_name)
-    if inspect.isfunction(_draw) and _draw.__module__ != __name__:
-        describe(_draw, GROUPS.get(_name, ()))
+for _name, _draw in list(globals().items()):
+    if inspect.isfunction(_draw) and _draw.__module__.startswith(f"{__name__}.") and not _name.startswith("_"):
+        __all__ += [_name]
+        described.describe(_draw, GROUPS.get(_name, ()))
         _kind = _KINDS.get(next(iter(inspect.signature(_draw).parameters.values())).annotation)
-        globals()[_name] = _draw if _kind is None else of_its_kind(_draw, _kind)
+        globals()[_name] = _draw if _kind is None else described.of_its_kind(_draw, _kind)
 
 Picture = Callable[["Result"], Axes | Figure]
 
@@ -185,11 +166,11 @@ def save(
     while not isinstance(figure, Figure):
         figure = figure.figure
     try:
-        with styled():
+        with style.styled():
             if title:
                 quantity = figure.get_suptitle()
                 figure.suptitle(f"{quantity}\n{title}" if quantity else title, fontsize=10)
-            return write(figure, path, overwrite=overwrite)
+            return style.write(figure, path, overwrite=overwrite)
     finally:
         plt.close(figure)
 
@@ -229,43 +210,32 @@ def all(
     InputError
         If a picture is unknown, or needs a group that was not recorded.
     """
-    if not isinstance(result, Result):
-        return _all_of_assembly(result, folder, only, title, overwrite=overwrite)
-    chosen = list(drawable(result) if only is None else only)
-    for name in chosen:
+    expect("result", result, Result, AssemblyResult)
+    of_shaft = _of_shaft(result)
+    wanted = None if only is None else list(only)
+    drawn: dict[Path, tuple[Callable[[], Axes | Figure], str | None]] = {
+        Path(f"{name}.png"): (of_shaft[name], title)
+        for name in (of_shaft if wanted is None else wanted)
+        if name in of_shaft
+    }
+    for place, one in by_name(result).items():
+        chosen = drawable(one) if wanted is None else [name for name in wanted if name not in of_shaft]
+        _check(one, chosen)
+        heading = conditions(one) if title is None else title
+        drawn |= {Path(place, f"{name}.png"): (partial(PICTURES[name][0], one), heading) for name in chosen}
+    folder = make_folder(folder)
+    for path in drawn:  # before the first is drawn
+        output_path(make_folder(folder / path.parent) / path.name, overwrite=overwrite)
+    return [save(draw(), folder / path, heading, overwrite=overwrite) for path, (draw, heading) in drawn.items()]
+
+
+def _check(result: Result, pictures: Sequence[str]) -> None:
+    for name in pictures:
         if name not in PICTURES:
             raise InputError.of("only", name, unknown_name(name, PICTURES))
-    least = SPECTRUM_RECORDS if "spectrum" in chosen else 2
-    if len(result) < least:
+    least = SPECTRUM_RECORDS if "spectrum" in pictures else 2
+    if pictures and len(result) < least:
         raise InputError.of("result", len(result), f"must have at least {least} records to draw this")
-    folder = make_folder(folder)
-    heading = conditions(result) if title is None else title
-    files = {name: folder / f"{name}.png" for name in chosen}
-    for path in files.values():  # before the first is drawn
-        output_path(path, overwrite=overwrite)
-    return [save(PICTURES[name][0](result), path, heading, overwrite=overwrite) for name, path in files.items()]
-
-
-def _all_of_assembly(
-    result: AssemblyResult,
-    folder: str | os.PathLike[str],
-    only: Iterable[str] | None,
-    title: str | None,
-    *,
-    overwrite: bool,
-) -> list[Path]:
-    of_shaft = of_assembly(result)
-    wanted = None if only is None else list(only)
-    own = of_shaft if wanted is None else [name for name in wanted if name in of_shaft]
-    of_bearings = None if wanted is None else [name for name in wanted if name not in of_shaft]
-    folder = make_folder(folder)
-    for name in own:
-        output_path(folder / f"{name}.png", overwrite=overwrite)
-    written = [save(of_shaft[name](), folder / f"{name}.png", title, overwrite=overwrite) for name in own]
-    for name, one in result.items():
-        if of_bearings is None or of_bearings:
-            written += all(one, folder / name, of_bearings, title, overwrite=overwrite)
-    return written
 
 
 def drawable(result: Result) -> tuple[str, ...]:
@@ -302,7 +272,7 @@ def conditions(result: Result) -> str:
     for symbol, name in (("Fa", "$F_a$"), ("Fr", "$F_r$")):
         if any(found.get(symbol, ())):
             parts.append(f"{name} {spoken(found[symbol])} N")
-    return f"{plain(scene.bearing.name)}: {', '.join(parts)}"
+    return f"{style.plain(scene.bearing.name)}: {', '.join(parts)}"
 
 
 def make_folder(folder: str | os.PathLike[str]) -> Path:

@@ -19,8 +19,7 @@ SHARED: Final = {
         "bins : int\n    Number of places around the bearing.",
         "last : float or None\n    Number of last shaft revolutions to show; None shows all.",
         "on : {'cage', 'outer_ring'}\n    The body.",
-        "once_per : {'cage', 'shaft', 'roller'}\n    A turn of the cage, a turn of the shaft, or a pitch of the cage (the next roller "
-        "at the same place).",
+        "once_per : {'cage', 'shaft', 'roller'}\n    A turn of the cage, of the shaft, or a pitch of the cage (the next roller).",
         "pocket : int\n    Number of the pocket, 0 to Z - 1.",
         "records : int\n    Number of records to use, spread over the run.",
         "ring : {'inner', 'outer'}\n    Which ring: the outer one where it moves with a housing.",

@@ -62,7 +62,7 @@ def draw_path(ax: Axes, place: Array, turned: Array) -> PathCollection:
     ax.plot(*path.T, color=GREY, linewidth=0.4, zorder=0)
     ax.set(xlabel=f"x from its mean, {mean[0]:.3g} µm (µm)", ylabel=f"y from its mean, {mean[1]:.3g} µm (µm)")
     ax.locator_params(nbins=5)
-    return ax.scatter(*path.T, c=turned, s=3, cmap=sequence(), linewidths=0)
+    return ax.scatter(path[:, 0], path[:, 1], c=turned, s=3, cmap=sequence(), linewidths=0)
 
 
 def ring_motion(result: Result, last: float | None = None, *, ring: Ring = "inner") -> Figure:

@@ -266,6 +266,11 @@ class AssemblyResult(Mapping[str, Result], Displayed):
         return energy_audit(terms)
 
 
+def by_name(result: Result | AssemblyResult) -> Mapping[str, Result]:
+    """The results of all bearings by their names; that of one alone by the name ''."""
+    return result if isinstance(result, AssemblyResult) else {"": result}
+
+
 @overload
 def load(path: str | os.PathLike[str], *, bearing: str) -> Result: ...
 
