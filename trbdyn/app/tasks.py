@@ -124,7 +124,7 @@ def _shown(
     from trbdyn.plot import all as save_pictures
     from trbdyn.plot import drawable
 
-    parts = dict(zip(subject.names, result.parts, strict=True))
+    parts = result.by_name
     numbers = {name: [list(row) for row in one.summary()._shown().rows] for name, one in parts.items()}
     write_whole(folder / "summary.json", json.dumps(numbers), overwrite=True)
     chosen = [picture for name in wants for picture in QUESTIONS[name].pictures] or ["torque_split"]

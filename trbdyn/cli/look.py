@@ -38,12 +38,10 @@ def _plot(options: argparse.Namespace) -> int:
     from trbdyn import plot
     from trbdyn.plot import animation
     from trbdyn.results.assembly import load
-    from trbdyn.results.result import Result
 
     result = load(options.file)
     folder = Path(f"{Path(options.file).with_suffix('')}_plots" if options.output is None else options.output)
-    parts = {"": result} if isinstance(result, Result) else result
-    moving = {folder / name / "animation.gif": one for name, one in parts.items() if options.animation}
+    moving = {folder / name / "animation.gif": one for name, one in result.by_name.items() if options.animation}
     for path in moving:
         if path.parent.is_dir():
             output_path(path, overwrite=options.overwrite)

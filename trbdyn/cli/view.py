@@ -47,7 +47,6 @@ def add_view_parser(commands: Any, parents: Sequence[argparse.ArgumentParser]) -
 
 def _view(options: argparse.Namespace) -> int:
     from trbdyn.results.assembly import load
-    from trbdyn.results.result import Result
     from trbdyn.viewer import save_gltf, view
 
     result = load(options.file)
@@ -55,10 +54,8 @@ def _view(options: argparse.Namespace) -> int:
     moving: dict[Path, Result] = {}
     if options.gltf:
         path = file_path(options.gltf, "gltf")
-        parts = {"": result} if isinstance(result, Result) else result
-        moving = {
-            path.with_name(f"{path.stem}.{name}{path.suffix}") if name else path: one for name, one in parts.items()
-        }
+        for name, one in result.by_name.items():
+            moving[path.with_name(f"{path.stem}.{name}{path.suffix}") if name else path] = one
         for path in moving:
             output_path(path, overwrite=options.overwrite, field="gltf")
     view(

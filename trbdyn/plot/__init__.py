@@ -73,7 +73,7 @@ from trbdyn.plot.wearing import wear_map as wear_map
 from trbdyn.plot.whirling import poincare as poincare, torque_sources as torque_sources, waterfall as waterfall
 from trbdyn.plot.assembly import of_result as _of_shaft
 from trbdyn.plot.style import STYLE as STYLE
-from trbdyn.results.assembly import AssemblyResult, by_name
+from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.conditions import ranges, spoken
 from trbdyn.results.result import Result
 
@@ -218,7 +218,7 @@ def all(
         for name in (of_shaft if wanted is None else wanted)
         if name in of_shaft
     }
-    for place, one in by_name(result).items():
+    for place, one in result.by_name.items():
         chosen = drawable(one) if wanted is None else [name for name in wanted if name not in of_shaft]
         _check(one, chosen)
         heading = conditions(one) if title is None else title

@@ -22,13 +22,13 @@ from trbdyn.plot.cage import revolutions, turns_label
 from trbdyn.plot.drawing import ROLLER, STEEL, placed, roller_outline
 from trbdyn.plot.ring import draw_motion, draw_path
 from trbdyn.plot.style import COLOURS, GREY, LIGHT, LINES, canvas, legend, line, plain, styled
-from trbdyn.results.assembly import AssemblyResult
+from trbdyn.results.result import Result
 from trbdyn.statics.assembly import ShaftEquilibrium, equilibrium
 from trbdyn.statics.preload import PreloadDiagram
 from trbdyn.statics.preload import preload_diagram as diagram_of
 
 if TYPE_CHECKING:
-    from trbdyn.results.result import Result
+    from trbdyn.results.assembly import AssemblyResult
 
 Array = NDArray[np.float64]
 
@@ -243,7 +243,7 @@ def _known(result: AssemblyResult) -> Assembly:
 
 def of_result(result: Result | AssemblyResult) -> dict[str, Callable[[], Axes | Figure]]:
     """The pictures of a shaft by name, none of one bearing alone; those of each bearing are in `trbdyn.plot.PICTURES`."""
-    if not isinstance(result, AssemblyResult):
+    if isinstance(result, Result):
         return {}
     found: dict[str, Callable[[], Axes | Figure]] = {
         "bearing_loads": lambda: bearing_loads(result),

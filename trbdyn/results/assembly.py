@@ -147,6 +147,11 @@ class AssemblyResult(Mapping[str, Result], Displayed):
         """The results of all bearings."""
         return tuple(self.values())
 
+    @property
+    def by_name(self) -> Mapping[str, Result]:
+        """The results of all bearings by their names."""
+        return self
+
     def moved(self, path: Path) -> Self:
         """The result, whose file has another name now; nothing is read again."""
         for result in self.values():
@@ -264,11 +269,6 @@ class AssemblyResult(Mapping[str, Result], Displayed):
                 if field.group == "energy" and result[field.name].ndim == 1:
                     terms[field.name] = terms.get(field.name, 0.0) + result[field.name]
         return energy_audit(terms)
-
-
-def by_name(result: Result | AssemblyResult) -> Mapping[str, Result]:
-    """The results of all bearings by their names; that of one alone by the name ''."""
-    return result if isinstance(result, AssemblyResult) else {"": result}
 
 
 @overload

@@ -321,6 +321,11 @@ class Result(Derived, Displayed):
         """The results of all bearings: this one."""
         return (self,)
 
+    @property
+    def by_name(self) -> Mapping[str, Self]:
+        """The results of all bearings by their names: this one by the name ''."""
+        return {"": self}
+
     def moved(self, path: Path) -> Self:
         """The result, whose file has another name now; nothing is read again."""
         self._source.moved(path)
