@@ -37,6 +37,7 @@ class Facet:
         return Facet((self.corners - origin) @ turn.T, turn @ self.normal, self.face)
 
 
+Corner = tuple[float, ...]
 Near = Callable[[FloatArray, float, FloatArray, float], bool]
 """Whether a roller may touch anything within an extent (m) of a point, where normals are within an angle (rad) of one there."""
 
@@ -288,7 +289,7 @@ def _joined_triangles(part: Any) -> list[FloatArray]:
     for triangle in shapely.constrained_delaunay_triangles(part).geoms:
         corners = _without_idle(np.array(triangle.exterior.coords)[:-1], triangle.exterior.is_ccw)
         if len(corners) == 3 and _is_convex(corners):
-            pieces.append(corners)
+            pieces.append(list(map(tuple, corners.tolist())))
     number = 0
     while number < len(pieces):
         for other in range(number + 1, len(pieces)):
@@ -299,18 +300,16 @@ def _joined_triangles(part: Any) -> list[FloatArray]:
                 break
         else:
             number += 1
-    return pieces
+    return [np.array(piece) for piece in pieces]
 
 
-def _joined(one: FloatArray, other: FloatArray) -> FloatArray | None:
+def _joined(one: list[Corner], other: list[Corner]) -> list[Corner] | None:
     """Two convex polygons that share a side as one, if that is convex."""
-    for i in range(len(one)):
-        for j in range(len(other)):
-            if np.array_equal(one[i], other[(j + 1) % len(other)]) and np.array_equal(
-                one[(i + 1) % len(one)], other[j]
-            ):
-                rest = np.roll(one, -(i + 1), axis=0)
-                both = np.concatenate([rest, np.roll(other, -(j + 1), axis=0)[1:-1]])
-                both = _without_idle(both, True)
-                return both if len(both) <= MAX_VERTICES and _is_convex(both) else None
+    following = {corner: number for number, corner in enumerate(other)}
+    for i, begin in enumerate(one):
+        end = one[(i + 1) % len(one)]
+        j = following.get(end)
+        if j is not None and other[(j + 1) % len(other)] == begin:
+            both = _without_idle(np.array(one[i + 1 :] + one[: i + 1] + (other[j + 1 :] + other[: j + 1])[1:-1]), True)
+            return list(map(tuple, both.tolist())) if len(both) <= MAX_VERTICES and _is_convex(both) else None
     return None
