@@ -85,29 +85,11 @@ def test_turned_shifted_and_in_inches(drawings: ModuleType, rig: trb.Bearing, re
     path = drawings.write(
         "lands", rig, tmp_path / "moved.step", shift=(12.0, -30.0, 7.0), turn=(0.7, -2.1, 0.3), inches=True
     )
-    before, after = read, read_cage(path, rig)
+    before, after = read, read_cage(path, rig, tolerance=1e-5)
     same_faces(after.pockets[0], rig.pocket)
     assert after.volume == pytest.approx(before.volume, rel=1e-6)
     assert after.offset == pytest.approx(before.offset, abs=1e-9)
     np.testing.assert_allclose(after.inertia, before.inertia, atol=1e-5 * before.inertia.max())
-
-
-def test_mass_is_that_of_the_body(drawings: ModuleType, rig: trb.Bearing, tmp_path: Path) -> None:
-    """Volume, centre and moments of a window cage, beside the quadrature over its dimensions; and a scene with it runs."""
-    path = drawings.write("sheet", rig, tmp_path / "sheet.step", corner=0.0)
-    cage = trb.Cage.from_step(path, rig)
-    body = trb.CageBody(thickness=2e-3, small_rim_width=4e-3, large_rim_width=4e-3)
-    other = rig.replace(
-        cage=trb.Cage(play_radial=0.25e-3, play_circumferential=0.12e-3, play_axial=0.4e-3, body=body)
-    ).cage
-    assert cage.mass == pytest.approx(other.mass, rel=1e-3)
-    assert cage.inertia_axial == pytest.approx(other.inertia_axial, rel=1e-3)
-    assert cage.inertia_transverse == pytest.approx(other.inertia_transverse, rel=1e-3)
-    assert cage.play_circumferential == pytest.approx(
-        0.12e-3, rel=1e-2
-    )  # a thinner wall touches the end's sphere elsewhere
-    result = trb.Simulation(trb.Scene(rig.replace(cage=cage), speed_rpm=3000, axial_load=4930.0)).run(duration=1e-3)
-    assert result.success
 
 
 @pytest.mark.slow
@@ -138,15 +120,3 @@ def test_what_does_not_belong_together_is_refused(rig: trb.Bearing, lands: Path,
         trb.Cage.from_step(cut, rig)
     with pytest.raises(trb.InputError, match="tolerance"):
         trb.Cage.from_step(lands, rig, tolerance=1.0)
-
-
-def test_a_case_file_takes_a_drawing(rig: trb.Bearing, lands: Path, tmp_path: Path) -> None:
-    case = tmp_path / "drawn.toml"
-    case.write_text(
-        f'[bearing]\ncase = "30310"\n[bearing.cage]\ndrawing = {{file = "{lands}", tolerance = 1e-5}}\nunbalance = 1e-6\n'
-        "[scene]\nspeed_rpm = 1000\naxial_load = 4930.0\n"
-    )
-    scene, _ = trb.load_case(case)
-    assert scene.bearing.cage.unbalance == 1e-6
-    assert scene.bearing.cage.pocket is not None
-    assert scene.bearing.cage.pocket.face("leading_bar").part == "flank"
