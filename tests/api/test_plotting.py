@@ -1,4 +1,7 @@
-"""Pictures show the numbers they should, change no global setting and save themselves."""
+"""Pictures go into given axes, change no global setting, save themselves, and say what cannot be drawn.
+
+What each of them shows is kept by `test_seen.py`; here are those that evaluate records again, and what depends on the result.
+"""
 
 from __future__ import annotations
 
@@ -16,15 +19,14 @@ mpl.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-from matplotlib.collections import LineCollection
-from matplotlib.lines import Line2D
-from matplotlib.patches import Circle
 from PIL import Image
 
+import trbdyn as trb
 from trbdyn import animation, plot
 from trbdyn.errors import FileError, InputError
 from trbdyn.plot.style import COLOURS, thin
 from trbdyn.results.result import Result
+from trbdyn.run.replay import Replay
 
 
 @pytest.fixture(autouse=True)
@@ -33,23 +35,6 @@ def _no_traces() -> Iterator[None]:
     yield
     plt.close("all")
     assert dict(mpl.rcParams) == before
-
-
-def test_cage_locus_shows_the_path_and_the_circles(whirling: Result) -> None:
-    ax = plot.cage_locus(whirling)
-    path = next(item for item in ax.collections if isinstance(item, LineCollection))
-    points = np.concatenate(path.get_segments())
-    np.testing.assert_allclose(np.hypot(points[:, 0], points[:, 1]), 0.9, rtol=1e-9)
-    assert [patch.get_radius() for patch in ax.patches] == [1.0, pytest.approx(0.48)]
-    assert ax.get_aspect() == 1.0
-    assert "C_{pr}" in ax.get_xlabel()
-    texts = [text.get_text() for text in ax.figure.legends[0].get_texts()]
-    assert texts[:2] == ["radial play $C_{pr}$ = 0.25 mm", "circumferential play $C_{pc}$ = 0.12 mm"]
-    plain = plot.cage_locus(whirling, plane="rail", colour_by_time=False, circles={"Cpr": 1.0, "equal spacing": 0.436})
-    assert len(plain.patches) == 2
-    assert not plain.collections
-    for shown in (ax, plain):  # the largest circle fills the picture
-        assert 1.0 < shown.get_xlim()[1] == shown.get_ylim()[1] < 1.2
 
 
 def test_the_legend_of_the_locus_lies_beside_the_colour_bar(whirling: Result) -> None:
@@ -74,23 +59,6 @@ def test_pictures_draw_into_given_axes(whirling: Result) -> None:
     assert figure.axes == list(axes.flat)
 
 
-def test_axes_carry_units_and_numbers(whirling: Result) -> None:
-    tilt = plot.tilt(whirling, last=5.0)
-    assert tilt.get_ylabel() == "cage tilt (mrad)"
-    assert tilt.get_xlim() == pytest.approx((15.0, 20.0), abs=0.01)
-    np.testing.assert_allclose(np.abs(tilt.lines[0].get_ydata()).max(), 0.2, rtol=1e-4)
-    spacing = plot.spacing_angles(whirling, n=5)
-    assert "5 gaps" in spacing.get_ylabel()
-    named = [line for line in spacing.lines if not line.get_label().startswith("_")]
-    assert [line.get_label() for line in named] == ["0–5", "1–6", "2–7", "3–8", "4–9"]
-    expected = np.degrees(whirling.spacing_angles(5)[0, 0])
-    assert named[0].get_ydata()[0] == pytest.approx(expected)
-    loads = plot.contact_loads(whirling)
-    assert "1833 N" in loads.get_legend().get_texts()[0].get_text()
-    audit = plot.energy_audit(whirling)
-    assert any("1.3e-06" in text.get_text() for text in audit.get_legend().get_texts())
-
-
 def test_the_map_shows_the_orbit(build: Callable[..., tuple[Any, Result]]) -> None:
     """A cage that hangs far from the axis and hardly moves is no whirl."""
     hanging = build(radius=0.01e-3, centre=(0.0, -0.225e-3))[1]
@@ -102,7 +70,7 @@ def test_the_map_shows_the_orbit(build: Callable[..., tuple[Any, Result]]) -> No
 
 
 NEED_A_SCENE = ("pressure_map", "film_map", "ring_orbit", "ring_motion", "housing_orbit", "housing_motion")
-"""Records are evaluated again for them, or belong to free rings, so a stub of a scene does not do; tests/api/test_pictures.py,
+"""Records are evaluated again for them, or belong to free rings, so a stub of a scene does not do; the map of contacts below,
 tests/physics/test_free_ring.py and tests/physics/test_housing.py draw them."""
 
 WHOLE = ("pocket_forces", "attitude", "load_zone", "pocket_polar", *NEED_A_SCENE)
@@ -153,57 +121,117 @@ def test_a_run_without_a_cage_has_no_picture_of_it(name: str, whirling: Result) 
         plot.PICTURES[name][0](whirling)
 
 
-def test_the_audit_is_drawn_by_quiet_lines(whirling: Result) -> None:
-    ax = plot.energy_audit(whirling)
-    assert all(line.get_xdata().size <= 241 for line in ax.lines)
-    stored = np.abs(whirling.energy_balance["kinetic_energy"] + whirling.energy_balance["elastic_energy"])
-    assert ax.lines[2].get_ydata().max() == pytest.approx(stored.max())
-
-
-def test_the_split_of_torque_has_the_shares_of_the_losses(whirling: Result) -> None:
-    ax = plot.torque_split(whirling)
-    loss = whirling.power_split
-    widths = sorted(bar.get_width() for bar in ax.patches)
-    np.testing.assert_allclose(
-        widths, sorted(value / (2 * np.pi * 50.0) for value in loss.values() if value), rtol=1e-9
-    )
-    assert "forces on the inner ring" in ax.get_xlabel()
+def test_a_torque_without_its_losses_is_one_force(whirling: Result) -> None:
+    assert "forces on the inner ring" in plot.torque_split(whirling).get_xlabel()
     alone = plot.torque_split(whirling.select(["torque"]))
     assert "force on the inner ring" in alone.figure.get_suptitle()
 
 
-def test_spectrum_peaks_at_the_cage_frequency(whirling: Result) -> None:
-    ax = plot.spectrum(whirling)
-    order, density = ax.lines[0].get_data()
-    assert order[np.argmax(density)] == pytest.approx(1.0, abs=0.1)
+@pytest.mark.parametrize("sizes", [(1.0, 2.0, 3.0), (-1.0, 2.0, 3.0), (1.0, 2.0, -3.0), (-1.0, -2.0, -3.0)])
+def test_all_bars_lie_within_the_axes(
+    whirling: Result, monkeypatch: pytest.MonkeyPatch, sizes: tuple[float, float, float]
+) -> None:
+    """Those that point to the left, too; the axis begins at zero only where there are none."""
+    split = dict(zip(("raceways", "ribs", "pockets"), sizes, strict=True))
+    monkeypatch.setattr(Result, "power_split", property(lambda _: split))
+    ax = plot.power_split(whirling)
+    low, high = ax.get_xlim()
+    assert all(low <= bar.get_width() <= high for bar in ax.patches)
+    assert (low == 0.0) == (min(sizes) > 0.0)
 
 
-def test_pocket_forces_have_a_panel_a_face(whirling: Result) -> None:
-    figure = plot.pocket_forces(whirling, last=4.0)
-    panels = [ax for ax in figure.axes if ax.get_ylabel() == "pocket"]
-    assert [ax.get_title(loc="left") for ax in panels] == ["leading bar", "trailing bar", "large end wall"]
-    shown = panels[0].collections[0].get_array()
-    last = whirling.window(whirling.final_time - 4 / 50.0)
-    np.testing.assert_allclose(shown.reshape(12, -1).max(axis=1), last.pocket_force[:, :, 0].max(axis=0), rtol=0.02)
-    assert np.ma.count_masked(shown) > 0.5 * shown.size
-    assert "(N)" in figure.axes[-1].get_ylabel()
-    few = plot.pocket_forces(whirling, pockets=[0, 6], last=None)
-    assert [text.get_text() for text in few.axes[0].get_yticklabels()] == ["0", "6"]
-    with pytest.raises(InputError, match="pockets"):
-        plot.pocket_forces(whirling, pockets=[12])
-    with pytest.raises(InputError, match="rollers"):
-        plot.spacing_angles(whirling, rollers=[12])
+@pytest.mark.parametrize(("radius", "wanted"), [(0.9, 1.08), (1.5, 1.62)])
+def test_a_section_shows_the_circle_of_the_play_or_the_whole_path(build: Any, radius: float, wanted: float) -> None:
+    """Eight per cent of room around the farther one."""
+    ax = plot.poincare(build(radius=radius * 0.25e-3)[1])
+    assert (*ax.get_xlim(), *ax.get_ylim()) == pytest.approx((-wanted, wanted) * 2, rel=1e-3)
 
 
-def test_whirl_map_marks_every_run(build: Callable[..., tuple[Any, Result]]) -> None:
-    runs = [build(radius=radius, n=2001)[1] for radius in (0.1e-3, 0.225e-3)]
-    ax = plot.whirl_map(runs)
-    np.testing.assert_allclose(ax.collections[0].get_array(), [0.4, 0.9], rtol=1e-2)
-    assert "orbit" in ax.figure.axes[1].get_ylabel()
-    np.testing.assert_allclose(ax.collections[0].get_offsets(), [[3000.0, 4.93]] * 2)
-    # runs at one load and speed do not look as if they differed
-    assert np.ptp(ax.get_ylim()) >= 0.2 * 4.93
-    assert np.ptp(ax.get_xlim()) >= 0.2 * 3000.0
+# ---- of runs ----
+
+
+@pytest.fixture(scope="module")
+def loaded() -> Result:
+    return trb.Simulation(trb.cases.paper_30310(2000.0, 4930.0, 5530.0)).run(revolutions=1)
+
+
+@pytest.mark.parametrize("quantity", ["pressure", "slide_roll"])
+def test_a_map_is_the_mean_of_the_rollers_that_passed(loaded: Result, quantity: str) -> None:
+    """Every cell: mean over the records used and the rollers in that sector whose node carries load."""
+    records, bins = 7, 23  # no roller stands on a border at the start, save at 0
+    figure = plot.contact_map(loaded, quantity, records=records, bins=bins)
+    replay, factor = Replay(loaded), 1e-9 if quantity == "pressure" else 1.0
+    index = np.linspace(0, len(loaded) - 1, records).round().astype(int)
+    angle = np.mod(loaded.roller_orbit_angle[index], 2.0 * np.pi)
+    found = [replay.contacts(int(k)) for k in index]
+    nodes = replay.stations.size
+    for row, ax in enumerate(figure.axes[:2]):
+        assert ax.get_title(loc="left") == ("outer raceway", "inner raceway")[row]
+        mesh = ax.collections[0]
+        shown = np.ma.filled(np.ma.asarray(mesh.get_array()).reshape(nodes, bins), np.nan)
+        corners = mesh.get_coordinates()
+        np.testing.assert_allclose(corners[0, :, 0], np.linspace(0.0, 360.0, bins + 1))
+        half = 0.5e3 * loaded.scene.bearing.roller.effective_length
+        np.testing.assert_allclose(corners[[0, -1], 0, 1], (-half, half))
+        passed = 0
+        for place in range(bins):
+            inside = (angle >= 2.0 * np.pi * place / bins) & (angle < 2.0 * np.pi * (place + 1) / bins)
+            if not inside.any():
+                continue
+            passed += 1
+            values = np.concatenate([found[k][f"raceway_{quantity}"][row][inside[k]] for k in range(records)])
+            loads = np.concatenate([found[k]["raceway_load"][row][inside[k]] for k in range(records)])
+            for node in range(nodes):
+                touching = loads[:, node] > 0.0
+                wanted = factor * values[touching, node].mean() if touching.any() else np.nan
+                np.testing.assert_allclose(shown[node, place], wanted, rtol=1e-9)
+        assert passed > 8
+    clims = [ax.collections[0].get_clim() for ax in figure.axes[:2]]
+    assert clims[0] == clims[1], "both rings by the same colours"
+    last = figure.axes[1]
+    assert last.get_xlabel() == "place around the bearing from x towards y (deg)"
+    np.testing.assert_array_equal(last.get_xticks(), np.arange(0, 361, 45))
+
+
+def test_waterfall_peaks_at_the_whirl() -> None:
+    runs = [
+        trb.Simulation(trb.cases.paper_30310(speed, 4930.0, start=trb.Start.whirl(0.9))).run(revolutions=6)
+        for speed in (3000.0, 1000.0)
+    ]
+    ax = plot.waterfall(runs)
+    for line, run in zip(ax.lines[:2], reversed(runs), strict=True):
+        x, y = line.get_data()
+        shaft = abs(float(run.shaft_speed.mean())) / (2 * np.pi)
+        assert x[np.argmax(y)] == pytest.approx(run.whirl_frequency / shaft, abs=0.2)
+    narrow = plot.waterfall(runs, reach=0.5, decades=0.5)
+    assert narrow.get_xlim() == pytest.approx((-0.5, 0.5), abs=0.1)
+    with pytest.raises(InputError, match="results"):
+        plot.waterfall([runs[0].window(stop=1e-3)])
+
+
+@pytest.mark.parametrize(
+    ("draw", "match"),
+    [
+        (lambda result: plot.load_zone(result, ax=plt.subplots()[1]), "polar"),
+        (lambda result: plot.contact_map(result, quantity="colour"), "quantity = 'colour' : must be one of pressure"),
+        (lambda result: plot.contact_map(result, sides=["rib"]), "sides = 'rib'"),
+        (lambda result: plot.contact_map(result, records=0), "records = 0"),
+        (lambda result: plot.poincare(result, once_per="day"), "once_per = 'day'"),
+        (lambda result: plot.waterfall([result], reach=0.0), "must be > 0"),
+        (lambda result: plot.waterfall([result], decades=0.0), "must be > 0"),
+        (lambda result: plot.waterfall([]), "results"),
+        (lambda result: plot.pocket_drawing(result.scene.bearing, 16), "pocket = 16"),
+        (lambda result: plot.pocket_forces(result, pockets=[12]), "pockets"),
+        (lambda result: plot.spacing_angles(result, rollers=[12]), "rollers"),
+    ],
+)
+def test_what_cannot_be_drawn_is_said(loaded: Result, draw: Callable[[Result], object], match: str) -> None:
+    with pytest.raises(InputError, match=match):
+        draw(loaded)
+
+
+def test_nothing_is_drawn_of_pockets_that_were_not_touched(loaded: Result) -> None:
+    assert "no pocket was touched" in plot.pocket_polar(loaded.window(stop=0.0)).texts[0].get_text()
 
 
 @pytest.mark.slow
@@ -267,36 +295,6 @@ def test_animation_moves_and_saves(tmp_path: Path, whirling: Result) -> None:
         assert np.abs(np.asarray(image.convert("L"), dtype=float) - first).max() > 50
     with pytest.raises(InputError, match="frames"):
         animation.animate(whirling, frames=0)
-
-
-def test_animation_draws_the_cage_as_a_circle_and_marks_on_the_rollers(whirling: Result) -> None:
-    moving = animation.animate(whirling, last=2.0, frames=4)
-    for frame in (0, 3):
-        drawn = moving._func(frame)
-        ring = next(one for one in drawn if isinstance(one, Line2D) and len(one.get_xdata()) > 20)
-        hub = next(one for one in drawn if isinstance(one, Line2D) and one.get_marker() == "+")
-        x, y = (np.asarray(values) for values in ring.get_data())
-        assert (x[0], y[0]) == pytest.approx((x[-1], y[-1]))
-        radius = np.hypot(x - hub.get_xdata()[0], y - hub.get_ydata()[0])
-        geometry = whirling.geometry
-        assert radius == pytest.approx(500.0 * (geometry["outer_race_radius"] + geometry["inner_race_radius"]))
-        turned = np.unwrap(np.arctan2(y - hub.get_ydata()[0], x - hub.get_xdata()[0]))
-        assert turned[-1] - turned[0] == pytest.approx(2.0 * np.pi)
-        rollers = [one for one in drawn if isinstance(one, Circle)]
-        marks = [one for one in drawn if isinstance(one, Line2D) and len(one.get_xdata()) == 2]
-        assert len(marks) == len(rollers) > 0
-        path = hub.axes.figure.axes[1]  # the locus and the play fill its picture
-        assert max(1.0, np.abs(whirling.cage_locus()).max()) < path.get_xlim()[1] == path.get_ylim()[1] < 1.3
-        for roller, mark in zip(rollers, marks, strict=True):
-            (x0, x1), (y0, y1) = mark.get_data()
-            assert (x0, y0) == pytest.approx(roller.center)
-            assert np.hypot(x1 - x0, y1 - y0) == pytest.approx(roller.radius)
-            if frame == 0:  # marks begin on the rays from the axis
-                assert (x1 - x0) * roller.center[1] == pytest.approx(
-                    (y1 - y0) * roller.center[0], abs=0.02 * roller.radius**2
-                )
-                assert (x1 - x0) * roller.center[0] + (y1 - y0) * roller.center[1] > 0.0
-    plt.close(moving._fig)
 
 
 def test_descriptions_of_pictures_are_complete() -> None:

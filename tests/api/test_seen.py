@@ -1,9 +1,8 @@
 """Every picture against a description of itself that was kept when somebody last looked at it.
 
-The other tests of pictures compare curves with the records. This one notices whatever else changes: limits of an axis, a colour,
-a legend, a mark. What a figure holds is written down as lines of text, with the numbers of each curve as first, last, least,
-largest and mean; numbers may differ by a thousandth. After a change that is meant, look at the pictures and keep their
-descriptions again:
+Whatever changes is noticed: a curve, limits of an axis, a colour, a legend, a mark. What a figure holds is written down as lines
+of text, with the numbers of each curve as first, last, least, largest and mean; numbers may differ by a thousandth. After a
+change that is meant, look at the pictures, compare them with the records, and keep their descriptions again:
 
     .venv/bin/python -m pytest tests/api/test_seen.py --keep-pictures
 """
@@ -27,9 +26,11 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import xarray
+from matplotlib.axis import Axis
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.text import Annotation
+from matplotlib.ticker import FixedFormatter, FuncFormatter
 from numpy.typing import NDArray
 
 import trbdyn as trb
@@ -96,6 +97,14 @@ def lines_of(ax: Any) -> Iterator[str]:
         yield f"text {one.get_text()!r} at {numbers(one.get_position())}{of}"
 
 
+def ticks_of(axis: Axis) -> str:
+    """Its places, the labels that somebody has given them, and whether it has a grid."""
+    given = isinstance(axis.get_major_formatter(), FixedFormatter | FuncFormatter)
+    labels = [label.get_text() for label in axis.get_ticklabels()] if given else []
+    grid = "grid" if axis.get_gridlines() and axis.get_gridlines()[0].get_visible() else "no grid"
+    return f"ticks {numbers(axis.get_ticklocs())} {labels or ''} {grid}"
+
+
 def described(figure: Figure) -> list[str]:
     """All that a figure holds."""
     found = [f"figure {figure.get_suptitle()!r} {' x '.join(f'{one:g}' for one in figure.get_size_inches())} inches"]
@@ -103,6 +112,7 @@ def described(figure: Figure) -> list[str]:
         words = [ax.get_title(), ax.get_xlabel(), ax.get_ylabel()]
         limits = f"x {numbers(ax.get_xlim())} {ax.get_xscale()} y {numbers(ax.get_ylim())} {ax.get_yscale()}"
         found.append(f"axes {words} {limits} aspect {ax.get_aspect()} {ax.name}")
+        found += [f"{name} {ticks_of(axis)}" for name, axis in (("x", ax.xaxis), ("y", ax.yaxis)) if axis.get_visible()]
         if ax.get_legend() is not None:
             found.append(f"legend {[text.get_text() for text in ax.get_legend().get_texts()]}")
         found += lines_of(ax)
@@ -199,7 +209,7 @@ class Pictures:
 
     def of_result(self) -> Iterator[tuple[str, Any]]:
         of_rings = ("ring_orbit", "ring_motion", "housing_orbit", "housing_motion")
-        skipped = ("pressure_map", "film_map", "pocket_polar", *of_rings)
+        skipped = ("pressure_map", "film_map", *of_rings)  # records are evaluated again for these: test_plotting.py
         for name, (draw, _) in plot.PICTURES.items():
             if name not in skipped:
                 yield name, draw(self.result)
@@ -231,6 +241,10 @@ class Pictures:
             bearing = getattr(trb.cases, f"bearing_{name}", trb.cases.rig_30310)()
             yield f"bearing_drawing of {name}", plot.bearing_drawing(bearing)
             yield f"pocket_drawing of {name}", plot.pocket_drawing(bearing)
+        for name in trb.pocket_shapes.SHAPES:
+            given = {"lean_deg": 20.0} if name == "drafted" else {}
+            pocket = trb.pocket_shapes.SHAPES[name](bearing, **given)
+            yield f"pocket_drawing of a {name} pocket", plot.pocket_drawing(bearing.replace({"cage.pocket": pocket}), 3)
         place = np.linspace(-10e-3, 10e-3, 201)
         height = -2e-6 * (place / 10e-3) ** 2 + 1e-7 * np.sin(40.0 * np.arange(201.0))
         out = np.arange(201) % 50 == 7
