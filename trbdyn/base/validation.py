@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import inspect
 import json
+import math
 import numbers
 import re
 from collections.abc import Mapping
@@ -84,6 +85,14 @@ def number_of(name: str, value: object) -> float:
         return as_number(value)
     except ValueError as error:
         raise InputError.of(name, value, str(error)) from None
+
+
+def whole_number_of(name: str, value: object, least: int, most: float = math.inf) -> int:
+    """An argument that must be a whole number within limits, as int; True and False are none."""
+    if isinstance(value, bool) or not isinstance(value, numbers.Integral) or not least <= int(value) <= most:
+        limit = f"at least {least}" if most == math.inf else f"from {least} to {most}"
+        raise InputError.of(name, value, f"must be a whole number, {limit}")
+    return int(value)
 
 
 Number = Annotated[float, BeforeValidator(as_number)]

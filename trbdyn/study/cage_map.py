@@ -16,7 +16,7 @@ from trbdyn.model.scene import Scene
 from trbdyn.run.options import RunOptions
 from trbdyn.study.answer import Answer
 from trbdyn.study.runner import Running
-from trbdyn.study.whirl import TURNS, CageRuns, speeds_of, variables_of
+from trbdyn.study.whirl import TURNS, CageRuns, speeds_of
 
 if TYPE_CHECKING:
     import xarray
@@ -127,17 +127,14 @@ def cage_map(
     expect("scene", scene, Scene)
     turning, loads = speeds_of(speeds), _loads(axial_loads)
     runs = CageRuns(scene, starts, options, longest, how)
-    runs.add([(start, speed, load) for start in runs.starts for load in loads for speed in turning])
-    rows = [[[runs.rows[start, speed, load] for speed in turning] for load in loads] for start in runs.starts]
-    import xarray
-
+    points = [(start, speed, load) for start in runs.starts for load in loads for speed in turning]
+    runs.add(points)
     places = {
         "start": runs.starts,
         "axial_load": ("axial_load", loads, {"units": "N"}),
         "speed_rpm": ("speed_rpm", turning, {"units": "rpm"}),
     }
-    variables = variables_of(rows, ("start", "axial_load", "speed_rpm"))
-    return CageMap(xarray.Dataset(variables, places, {"bearing": scene.bearing.name}))
+    return CageMap(runs.dataset(points, places))
 
 
 def _loads(loads: Any) -> list[float]:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from trbdyn.base.validation import number_of
+from trbdyn.base.validation import number_of, whole_number_of
 from trbdyn.errors import InputError
 from trbdyn.model.assembly import Subject
 from trbdyn.run.options import RunOptions
@@ -208,9 +208,7 @@ def random(
         If a range is wrong, or no case at all can be built.
     """
     _check_name(name)
-    for field, value, least in (("count", count, 1), ("seed", seed, 0)):
-        if isinstance(value, bool) or not isinstance(value, int | np.integer) or not least <= value < 2**63:
-            raise InputError.of(field, value, f"must be a whole number, at least {least}")
+    count, seed = whole_number_of("count", count, 1), whole_number_of("seed", seed, 0)
     if not isinstance(ranges, Mapping) or not all(isinstance(path, str) for path in ranges):
         raise InputError.of("ranges", ranges, "must be a table: ranges by their paths")
     _check_count(count)

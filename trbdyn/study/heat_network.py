@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.interpolate import PchipInterpolator
 
-from trbdyn.base.validation import number_of
+from trbdyn.base.validation import number_of, whole_number_of
 from trbdyn.errors import InputError
 from trbdyn.model.heat import PARTS, HeatPaths
 from trbdyn.model.ribs import Ribs
@@ -133,8 +133,6 @@ def rise(
             raise InputError.of(("heat_capacities", name), value, "must be above 0 and below 1e9 (J/K)")
     if not 0.0 < number_of("duration", duration) < 1e9:
         raise InputError.of("duration", duration, "must be above 0 and below 1e9 (s)")
-    if isinstance(points, bool) or not isinstance(points, int | np.integer) or points < 2:
-        raise InputError.of("points", points, "must be a whole number, at least 2")
     matrix, outside = equations(paths)
     held = np.array([capacities[name] for name in PARTS])
 
@@ -143,7 +141,7 @@ def rise(
         return (outside + np.array([heat[name] for name in PARTS]) - matrix @ nodes) / held
 
     start = network(paths, dict.fromkeys(PARTS, 0.0))
-    time = np.linspace(0.0, duration, points)
+    time = np.linspace(0.0, duration, whole_number_of("points", points, 2))
     found = solve_ivp(
         rates, (0.0, duration), [start[name] for name in PARTS], method="LSODA", t_eval=time, rtol=1e-8, atol=1e-6
     )

@@ -5,7 +5,7 @@ rollers that enter the load zone, and the load from which on they roll (docs/the
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Unpack
 
@@ -24,10 +24,10 @@ from trbdyn.run.options import RunOptions
 from trbdyn.run.replay import Replay
 from trbdyn.standards.iso281 import SMALLEST_LOAD_SHARE
 from trbdyn.study.answer import Answer
-from trbdyn.study.definition import Base, Case
+from trbdyn.study.definition import Case
+from trbdyn.study.points import DIMS, Points
 from trbdyn.study.runner import Running
-from trbdyn.study.settled import TURNS, failure, run_until_settled
-from trbdyn.study.torque_map import at_place, places_of, subject_of
+from trbdyn.study.settled import TURNS, run_until_settled, variables
 
 if TYPE_CHECKING:
     import xarray
@@ -172,34 +172,30 @@ def least_load(
     Examples
     --------
     >>> import trbdyn as trb
-    >>> found = trb.least_load(trb.cases.scene_nj210(), [3000.0], [(0.0, 100.0), (0.0, 3000.0)])
+    >>> found = trb.least_load(trb.cases.scene_nj210(), [3000.0], [(100.0, 100.0), (100.0, 3000.0)])
     >>> bool(found.data["cage_slip"][0, 0, 1] < 0.01)
     True
     """
-    scene = subject_of(subject)
     run = RunOptions(accuracy="fast") if options is None else options
-    places = places_of(scene, speeds, loads, temperatures)
+    points = Points(subject, speeds, loads, temperatures)
     if not 0.0 < number_of("slip", slip) < 1.0:
         raise InputError.of("slip", slip, "must be above 0 and below 1")
-    bases = [at_place(scene, place) for place in places]
-    if not any(base for base, _ in bases):
-        raise InputError.of("loads", loads, f"no point can be built; the first: {bases[0][1]}")
 
     def case(point: int, turns: float) -> Case:
-        base, error = bases[point]
-        speed = places[point][1]
-        own = run.replace(revolutions=turns, duration=None, save_every=60.0 / abs(speed) * turns / RECORDS)
-        made: Base | None = base
-        return Case({"point": point}, None if made is None else made.build({})[0], own, error)
+        base, error = points.bases[point]
+        save_every = 60.0 / abs(points.speed_at[point]) * turns / RECORDS
+        own = run.replace(revolutions=turns, duration=None, save_every=save_every)
+        return Case({"point": point}, None if base is None else base.build({})[0], own, error)
 
-    def judged(found: xarray.Dataset, turns: float) -> dict[str, Any]:
-        message = failure(found)
-        row = {name: math.nan if message else float(found[name]) for name in (*NUMBERS, "moves")}
-        return {**row, "turns": turns, "message": message, "settled": not message and row["moves"] <= STEADY}
+    def judged(found: xarray.Dataset) -> dict[str, Any]:
+        row = {name: float(found[name]) for name in observed}
+        return {**row, "settled": row["moves"] <= STEADY}
 
     observed = {name: _Observed(name) for name in (*NUMBERS, "moves")}
-    rows = run_until_settled(range(len(places)), TURNS, case, judged, observed, how)
-    return LeastLoad(_gathered(scene, places, rows, slip), float(slip), max(map(_rule, _bearings(scene))))
+    unknown = dict.fromkeys(observed, math.nan)
+    rows = run_until_settled(range(len(points)), TURNS, case, judged, observed, how, unknown)
+    found = _gathered(points, [rows[point] for point in range(len(points))], slip)
+    return LeastLoad(found, float(slip), max(map(_rule, points.bearings)))
 
 
 @dataclass(frozen=True)
@@ -274,11 +270,6 @@ def power_per_area(contacts: dict[str, Array]) -> Array:
     return np.divide(power, area, out=np.zeros_like(power), where=area > 0.0)
 
 
-def _bearings(subject: Subject) -> list[Bearing]:
-    parts: list[Any] = [*subject.parts.values()]
-    return [part.bearing for part in parts]
-
-
 def _rule(bearing: Bearing) -> float:
     """0.02 C (N)."""
     rating = bearing.ratings.dynamic or rating_iso281(
@@ -310,34 +301,16 @@ def least_of(sizes: Array, slips: Array, limit: float) -> float:
     return float(load[last] * (load[last + 1] / load[last]) ** share)
 
 
-def _gathered(scene: Subject, places: Sequence[Any], rows: Any, slip: float) -> xarray.Dataset:
+def _gathered(points: Points, rows: Sequence[Mapping[str, Any]], slip: float) -> xarray.Dataset:
     import xarray
 
-    warm, speeds, loads = ([*dict.fromkeys(place[k] for place in places)] for k in range(3))
-    dims, shape = ("temperature_c", "speed_rpm", "load"), (len(warm), len(speeds), len(loads))
-    found = [rows[point] for point in range(len(places))]
-    variables: dict[str, Any] = {
-        name: (dims, np.array([row[name] for row in found]).reshape(shape), {"long_name": words, "units": unit})
-        for name, (words, unit) in NUMBERS.items()
-    }
-    for name in ("settled", "turns"):
-        variables[name] = (dims, np.array([row[name] for row in found]).reshape(shape))
-    variables["message"] = (dims, np.array([row["message"] for row in found], dtype=object).reshape(shape))
-    sizes = np.hypot(*np.array(loads, dtype=float).T)
-    slips, settled = variables["cage_slip"][1], variables["settled"][1].astype(bool)
+    made = variables(rows, NUMBERS | dict.fromkeys(("settled", "turns", "message"), ("", "")), DIMS, points.shape)
+    sizes = np.hypot(*np.array(points.loads, dtype=float).T)
+    slips, settled = made["cage_slip"][1], made["settled"][1].astype(bool)
     known = np.where(settled | (slips > slip), slips, np.nan)  # a slip that still grows may pass the limit
     least = [[least_of(sizes, line, slip) for line in lines] for lines in known]
-    variables["least"] = (dims[:2], np.array(least), {"long_name": "least load for rollers to roll", "units": "N"})
-    parts: list[Any] = [*scene.parts.values()]
-    variables["drag"] = ((), all(part.effects.oil_fill > 0.0 for part in parts))
-    return xarray.Dataset(
-        variables,
-        coords={
-            "temperature_c": ("temperature_c", warm, {"units": "C"}),
-            "speed_rpm": ("speed_rpm", speeds, {"units": "rpm"}),
-            "axial_load": ("load", [load[0] for load in loads], {"units": "N"}),
-            "radial_load": ("load", [load[1] for load in loads], {"units": "N"}),
-            "size": ("load", sizes, {"long_name": "load", "units": "N"}),
-        },
-        attrs={"bearing": ", ".join(part.bearing.name for part in parts)},
-    )
+    made["least"] = (DIMS[:2], np.array(least), {"long_name": "least load for rollers to roll", "units": "N"})
+    parts: list[Any] = [*points.subject.parts.values()]
+    made["drag"] = ((), all(part.effects.oil_fill > 0.0 for part in parts))
+    places = points.coordinates | {"size": ("load", sizes, {"long_name": "load", "units": "N"})}
+    return xarray.Dataset(made, places, points.about)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from trbdyn.base.expected import expect
 from trbdyn.base.shown import Shown
-from trbdyn.base.validation import number_of
+from trbdyn.base.validation import number_of, whole_number_of
 from trbdyn.errors import InputError, unknown_name
 from trbdyn.model.assembly import Assembly, Subject
 from trbdyn.model.bearing import Bearing
@@ -248,11 +248,11 @@ def optimise(
         _wanted(want),
         _limited(limits or {}),
         checked_bands(tolerances) if tolerances else (),
-        _whole("draws", draws, 1) if tolerances else 1,
+        whole_number_of("draws", draws, 1) if tolerances else 1,
         judged,
-        _whole("designs", designs, FEWEST),
+        whole_number_of("designs", designs, FEWEST),
         _longer(confirm),
-        _whole("seed", seed, 0),
+        whole_number_of("seed", seed, 0),
         RunOptions(revolutions=5.0, accuracy="fast") if options is None else options,
         Running(executor="threads") | how,
     )
@@ -519,12 +519,6 @@ class Search:
 
 JUDGED: Final[dict[str, Any]] = {"worst": np.max, "mean": np.mean}
 """What counts of the draws of a design, turned so that small is good."""
-
-
-def _whole(field: str, value: Any, least: int) -> int:
-    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
-        raise InputError.of(field, value, f"must be a whole number, at least {least}")
-    return int(value)
 
 
 def _longer(confirm: Any) -> float:

@@ -34,15 +34,17 @@ def run_until_settled(
     points: Sequence[Point],
     turns: Sequence[float],
     case: Callable[[Point, float], Case],
-    judged: Callable[[xarray.Dataset, float], dict[str, Any]],
+    judged: Callable[[xarray.Dataset], Mapping[str, Any]],
     observables: Mapping[str, Observable],
     how: Running,
+    unknown: Mapping[str, Any] | None = None,
 ) -> dict[Point, dict[str, Any]]:
     """Run points, each again with the next number of turns (ascending) until it has settled or cannot be run.
 
-    `case` makes the case of a point with a number of turns; `judged` gives what is kept of the case's entry in the dataset and
-    its number of turns: ``settled``, ``message`` (why it could not be run, else empty), and what else is wanted. Runs go side
-    by side in threads unless `how` says otherwise. What was kept of each point's longest run is returned.
+    `case` makes the case of a point with a number of turns; `judged` gives from the entry of a run in the dataset whether it has
+    ``settled``, and what else is wanted, in place of which a run that failed has `unknown`. Each point's longest run is returned:
+    what was judged, its ``turns``, and a ``message`` that says why it failed, else empty. Runs go side by side in threads unless
+    `how` says otherwise.
     """
     rows: dict[Point, dict[str, Any]] = {}
     waiting = list(points)
@@ -51,14 +53,28 @@ def run_until_settled(
             break
         study = Study(tuple(case(point, length) for point in waiting), (), "settled")
         data = run_study(study, observables=observables, **(Running(executor="threads") | how))
-        rows |= {point: judged(data.isel(case=k), length) for k, point in enumerate(waiting)}
+        for k, point in enumerate(waiting):
+            found = data.isel(case=k)
+            done = str(found["status"].values) == "done"
+            message = "" if done else str(found["message"].values).splitlines()[0]
+            own = judged(found) if done else {**(unknown or {}), "settled": False}
+            rows[point] = {**own, "turns": length, "message": message}
         waiting = [point for point in waiting if not rows[point]["settled"] and not rows[point]["message"]]
     return rows
 
 
-def failure(found: xarray.Dataset) -> str:
-    """Why a case could not be run, in a line; empty if it could."""
-    return "" if str(found["status"].values) == "done" else str(found["message"].values).splitlines()[0]
+def variables(
+    rows: Sequence[Mapping[str, Any]], about: Mapping[str, tuple[str, str]], dims: Sequence[str], shape: Sequence[int]
+) -> dict[str, Any]:
+    """Variables of a dataset over some dimensions, each with its words and unit, from rows of runs: the last dimension changes
+    fastest.
+    """
+    made: dict[str, Any] = {}
+    for name, told in about.items():
+        values = np.array([row[name] for row in rows], dtype=object if isinstance(rows[0][name], str) else None)
+        attributes = {key: text for key, text in zip(("long_name", "units"), told, strict=True) if text}
+        made[name] = (dims, values.reshape(shape), attributes)
+    return made
 
 
 def short_run(options: RunOptions, speed_rpm: float, turns: float) -> RunOptions:

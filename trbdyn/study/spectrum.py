@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from trbdyn.base.own_files import file_path
-from trbdyn.base.validation import as_number
+from trbdyn.base.validation import as_number, whole_number_of
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.assembly import Subject
 from trbdyn.model.spectrum import LoadCase, Spectrum
@@ -116,8 +116,7 @@ def series_table(
     at = np.asarray(time, dtype=float)
     if at.ndim != 1 or at.size < 2 or not np.all(np.diff(at) > 0.0):
         raise InputError.of("time", at.size, "must have two samples or more, in ascending order (s)")
-    if isinstance(classes, bool) or not isinstance(classes, int) or not 1 <= classes <= 1000:
-        raise InputError.of("classes", classes, "must be a whole number from 1 to 1000 (1)")
+    classes = whole_number_of("classes", classes, 1, 1000)
     weights = np.gradient(at)
     weights[[0, -1]] *= 0.5
     places, values = [], {}

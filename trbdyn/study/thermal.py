@@ -13,6 +13,7 @@ from scipy.stats import qmc
 
 from trbdyn.base.expected import expect
 from trbdyn.base.shown import Shown
+from trbdyn.base.validation import whole_number_of
 from trbdyn.errors import InputError, TrbError
 from trbdyn.model.assembly import Assembly, ShaftBearing, Subject
 from trbdyn.model.growth import Growth
@@ -25,7 +26,7 @@ from trbdyn.study.answer import Answer
 from trbdyn.study.definition import Base, Case
 from trbdyn.study.heat_network import LossCurves, film_temperature, heat_of, network, rise
 from trbdyn.study.runner import Running
-from trbdyn.study.settled import JUDGED, TURNS, failure, run_until_settled, short_run
+from trbdyn.study.settled import JUDGED, TURNS, run_until_settled, short_run
 
 if TYPE_CHECKING:
     import xarray
@@ -274,12 +275,11 @@ def thermal(
             raise InputError.of(f"{prefix}lubricant.oil", None, limit)
     if not all(is_constant(quantity) for quantity in subject.quantities().values()):
         raise InputError.of("scene", "speed or loads", "must be constant in time")
-    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
-        raise InputError.of("seed", seed, "must be a whole number, at least 0")
+    seed = whole_number_of("seed", seed, 0)
     balance = _Balance(subject, own, RunOptions(accuracy="fast") if options is None else options, how)
     films = balance.found()
     losses, nodes = balance.losses(films), balance.nodes
-    bands, at = balance.bands(films, int(seed)), balance.subject_at(films)
+    bands, at = balance.bands(films, seed), balance.subject_at(films)
     found = {}
     for k, (name, part) in enumerate(zip(subject.names, _parts(at), strict=True)):
         flows = {end: g * (nodes[k][end] - outside) for end, (g, outside) in own[k].outer_links.items()}
@@ -420,12 +420,10 @@ class _Balance:
             parameters = {f"{prefix}film_c": t for prefix, t in zip(self.subject.parts, films, strict=True)}
             return Case(parameters, self.subject_at(films, nodes), short_run(self.options, speed, turns))
 
-        def judged(found: xarray.Dataset, _: float) -> dict[str, Any]:
-            if message := failure(found):
-                return {"settled": False, "message": message}
+        def judged(found: xarray.Dataset) -> dict[str, Any]:
             moves = max(float(found["drift"]), float(found["stored"]))
             losses = [_losses(found, f"{name}_" if name else "") for name in self.subject.names]
-            return {"settled": moves <= SETTLED, "message": "", "moves": moves, "losses": losses}
+            return {"settled": moves <= SETTLED, "moves": moves, "losses": losses}
 
         for films, row in run_until_settled(points, TURNS, case, judged, JUDGED, self.how).items():
             said = " and ".join(f"{t:.4g}" for t in films)

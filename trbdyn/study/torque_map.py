@@ -2,27 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trbdyn.base.expected import expect
 from trbdyn.base.shown import Shown
-from trbdyn.base.validation import number_of
+from trbdyn.base.validation import number_of, whole_number_of
 from trbdyn.errors import InputError
-from trbdyn.model.assembly import Assembly, Subject
+from trbdyn.model.assembly import Subject
 from trbdyn.model.bearing import Bearing
-from trbdyn.model.scene import Scene
 from trbdyn.results.fields import table
 from trbdyn.run.options import RunOptions
 from trbdyn.run.torque_laws import torque_laws
 from trbdyn.study.answer import Answer
-from trbdyn.study.definition import Base, Case
+from trbdyn.study.definition import Case
+from trbdyn.study.points import DIMS, Points
 from trbdyn.study.runner import Running
-from trbdyn.study.settled import JUDGED, TURNS, failure, run_until_settled, short_run
+from trbdyn.study.settled import JUDGED, TURNS, run_until_settled, short_run, variables
 from trbdyn.study.uncertainty import FEWEST, Band, band_of, checked_bands, drawn_case, open_inputs, unit_draws
 
 if TYPE_CHECKING:
@@ -46,7 +45,14 @@ _LOSSES: Final = tuple(field.name.removeprefix("loss_") for field in table() if 
 SOURCES: Final = (*_USUAL, *(name for name in _LOSSES if not name.startswith(_USUAL)))
 """Names of the shares of a torque. What a run calls rolling_pressure belongs to rolling, both raceways make traction, film and
 contact of a land are one."""
-FILMS: Final = ("film_parameter_inner", "film_parameter_rib")
+NUMBERS: Final = {
+    "torque": ("friction torque of the shaft", "N m"),
+    "drift": ("change of the torque that may still come", "1"),
+    "stored": ("share of the power that was not lost", "1"),
+    "turns": ("", "1"),
+    "film_parameter_inner": ("", "1"),
+    "film_parameter_rib": ("", "1"),
+}
 
 
 @dataclass(frozen=True, repr=False)
@@ -212,110 +218,33 @@ def torque_map(
     >>> found.lowest(load=1)[0]
     500.0
     """
-    scene = subject_of(subject)
     run = RunOptions(accuracy="fast") if options is None else options
-    places = places_of(scene, speeds, loads, temperatures)
+    points = Points(subject, speeds, loads, temperatures)
     if not 0.0 < number_of("tolerance", tolerance) < 1.0:
         raise InputError.of("tolerance", tolerance, "must be above 0 and below 1")
-    drawn = () if bands is False else checked_bands(open_inputs(scene) if bands is True else bands)
-    for field, value, least in (("samples", samples, FEWEST), ("seed", seed, 0)):
-        if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
-            raise InputError.of(field, value, f"must be a whole number, at least {least}")
-    unit = unit_draws(len(drawn), int(samples), int(seed)) if drawn else np.empty((0, 0))
-    bases = [at_place(scene, place) for place in places]
-    if not any(base for base, _ in bases):
-        raise InputError.of("loads", loads, f"no point can be built; the first: {bases[0][1]}")
-    rows = run_until_settled(
-        [(p, d) for p in range(len(places)) for d in range(1 + len(unit))],
-        TURNS,
-        lambda point, turns: _case(bases[point[0]], drawn, unit, *point, places[point[0]][1], run, turns),
-        lambda found, turns: _row(found, turns, tolerance),
-        JUDGED,
-        how,
-    )
-    return TorqueMap(_gathered(scene, places, bases, rows, len(unit)), float(tolerance))
+    drawn = () if bands is False else checked_bands(open_inputs(points.subject) if bands is True else bands)
+    count, seed = whole_number_of("samples", samples, FEWEST), whole_number_of("seed", seed, 0)
+    unit = unit_draws(len(drawn), count, seed) if drawn else np.empty((0, 0))
 
+    def case(point: tuple[int, int], turns: float) -> Case:
+        place, draw = point
+        (base, error), parameters = points.bases[place], {"point": place, "draw": draw}
+        if base is None:
+            return Case(parameters, None, run, error)
+        own = short_run(run, points.speed_at[place], turns)
+        if draw == 0:
+            return Case(parameters, base.build({})[0], own)
+        found = drawn_case(base, own, drawn, unit[draw - 1], draw)
+        return Case(parameters, found.scene, own, found.error)
 
-def subject_of(subject: Bearing | Subject) -> Subject:
-    if isinstance(subject, Bearing):
-        return Scene(subject, speed_rpm=1000.0, axial_load=1000.0)
-    expect("subject", subject, Scene, Assembly, Bearing)
-    return subject
+    def judged(found: xarray.Dataset) -> dict[str, Any]:
+        row: dict[str, Any] = {name: float(found[name]) if name in found else np.nan for name in NUMBERS}
+        return {**row, "share": _shares(found), "settled": max(row["drift"], row["stored"]) <= tolerance}
 
-
-Place = tuple[float, float, tuple[float, float]]
-
-
-def places_of(scene: Subject, speeds: Any, loads: Any, temperatures: Any) -> list[Place]:
-    """(temperature, speed, (axial, radial)) of every point, the last changing fastest."""
-    listed = {"speeds": speeds, "loads": loads}
-    listed |= {} if temperatures is None else {"temperatures": temperatures}
-    for field, values in listed.items():
-        if isinstance(values, str) or not isinstance(values, Iterable) or not len(list(values)):
-            raise InputError.of(field, values, "must be a sequence of at least one number")
-    pairs = []
-    for load in loads:
-        pair = tuple(load) if isinstance(load, Sequence) and not isinstance(load, str) else (load, 0.0)
-        if len(pair) != 2:
-            raise InputError.of("loads", load, "must be an axial load, or a pair of axial and radial load (N)")
-        pairs.append((number_of("loads", pair[0]), number_of("loads", pair[1])))
-    turned = [number_of("speeds", speed) for speed in speeds]
-    if not all(turned):
-        raise InputError.of("speeds", speeds, "must not hold 0: a shaft that stands has no friction torque (rpm)")
-    own = [_temperature(scene)] if temperatures is None else temperatures
-    warm = [number_of("temperatures", temperature) for temperature in own]
-    for field, found in (("speeds", turned), ("loads", pairs), ("temperatures", warm)):
-        if len(set(found)) != len(found):
-            raise InputError.of(field, listed.get(field), "must not hold a value twice")
-    return [(t, n, load) for t in warm for n in turned for load in pairs]
-
-
-def _temperature(subject: Subject) -> float:
-    """Temperature of the oil (C), of several bearings that of the first one."""
-    return subject.part.lubricant.temperature_c
-
-
-def at_place(scene: Subject, place: Place) -> tuple[Base | None, str]:
-    temperature, speed, (axial, radial) = place
-    overrides = scene.loaded(speed, axial, radial)
-    if temperature != _temperature(scene):
-        overrides |= {f"{prefix}lubricant.temperature_c": temperature for prefix in scene.parts}
-    try:
-        return Base.of(Base.of(scene).build(overrides)[0]), ""
-    except InputError as error:
-        return None, str(error).splitlines()[0]
-
-
-def _case(
-    made: tuple[Base | None, str],
-    bands: Sequence[Band],
-    unit: Array,
-    place: int,
-    draw: int,
-    speed: float,
-    run: RunOptions,
-    turns: float,
-) -> Case:
-    base, error = made
-    parameters = {"point": place, "draw": draw}
-    if base is None:
-        return Case(parameters, None, run, error)
-    own = short_run(run, speed, turns)
-    if draw == 0:
-        return Case(parameters, base.build({})[0], own)
-    found = drawn_case(base, own, bands, unit[draw - 1], draw)
-    return Case(parameters, found.scene, own, found.error)
-
-
-def _row(found: xarray.Dataset, turns: float, tolerance: float) -> dict[str, Any]:
-    """What is kept of a run."""
-    message = failure(found)
-    row: dict[str, Any] = {"turns": turns, "message": message}
-    for name in ("torque", "drift", "stored", *FILMS):
-        row[name] = float(found[name]) if not message and name in found else np.nan
-    row["share"] = np.full(len(SOURCES), np.nan) if message else _shares(found)
-    row["settled"] = not message and max(row["drift"], row["stored"]) <= tolerance
-    return row
+    unknown = dict.fromkeys(NUMBERS, np.nan) | {"share": np.full(len(SOURCES), np.nan)}
+    each = [(place, draw) for place in range(len(points)) for draw in range(1 + len(unit))]
+    rows = run_until_settled(each, TURNS, case, judged, JUDGED, how, unknown)
+    return TorqueMap(_gathered(points, rows, len(unit)), float(tolerance))
 
 
 def _shares(found: xarray.Dataset) -> Array:
@@ -329,70 +258,33 @@ def _shares(found: xarray.Dataset) -> Array:
     return np.array([sums[name] for name in SOURCES])
 
 
-def _gathered(
-    scene: Subject,
-    places: Sequence[Place],
-    bases: Sequence[tuple[Base | None, str]],
-    rows: Mapping[tuple[int, int], Mapping[str, Any]],
-    draws: int,
-) -> xarray.Dataset:
+def _gathered(points: Points, rows: Mapping[tuple[int, int], Mapping[str, Any]], draws: int) -> xarray.Dataset:
     import xarray
 
-    warm = list(dict.fromkeys(place[0] for place in places))
-    speeds = list(dict.fromkeys(place[1] for place in places))
-    loads = list(dict.fromkeys(place[2] for place in places))
-    dims, shape = ("temperature_c", "speed_rpm", "load"), (len(warm), len(speeds), len(loads))
-    first = [rows[p, 0] for p in range(len(places))]
+    first, shape = [rows[place, 0] for place in range(len(points))], points.shape
+    made = variables(first, NUMBERS | dict.fromkeys(("settled", "message"), ("", "")), DIMS, shape)
+    about = {"share": ("torque by what loses it", "N m")}
+    made |= variables(first, about, (*DIMS, "source"), (*shape, len(SOURCES)))
 
-    def column(name: str) -> Any:
-        return np.array([row[name] for row in first]).reshape(shape)
+    def torques(name: str, values: Any, unit: str = "N m") -> None:
+        made[name] = (DIMS, np.array(values).reshape(shape), {"units": unit})
 
-    variables: dict[str, Any] = {
-        "torque": (dims, column("torque"), {"long_name": "friction torque of the shaft", "units": "N m"}),
-        "share": (
-            (*dims, "source"),
-            np.array([row["share"] for row in first]).reshape(*shape, len(SOURCES)),
-            {"long_name": "torque by what loses it", "units": "N m"},
-        ),
-        "settled": (dims, column("settled")),
-        "drift": (dims, column("drift"), {"long_name": "change of the torque that may still come", "units": "1"}),
-        "stored": (dims, column("stored"), {"long_name": "share of the power that was not lost", "units": "1"}),
-        "turns": (dims, column("turns"), {"units": "1"}),
-        "message": (dims, np.array([row["message"] for row in first], dtype=object).reshape(shape)),
-        **{name: (dims, column(name), {"units": "1"}) for name in FILMS},
-    }
+    ends = [(row["torque"], row["torque"]) for row in first]
     if draws:
-        low, high, held = (np.full(len(places), np.nan) for _ in range(3))
-        for p in range(len(places)):
-            torques = [rows[p, d]["torque"] for d in range(1, draws + 1) if rows[p, d]["settled"]]
-            if len(torques) >= FEWEST:
-                low[p], high[p], held[p] = band_of(torques)
-        variables["torque_low"] = (dims, low.reshape(shape), {"units": "N m"})
-        variables["torque_high"] = (dims, high.reshape(shape), {"units": "N m"})
-        variables["torque_held"] = (dims, held.reshape(shape), {"units": "1"})
-    found = [torque_laws(base.build({})[0]) if base is not None else None for base, _ in bases]
-    if any(one is not None for one in found):
-        plain = variables["torque"][1].ravel()
-        ends = [variables[name][1].ravel() if draws else plain for name in ("torque_low", "torque_high")]
-        wide = [
-            (np.nan, np.nan) if one is None else one.band(low, high)
-            for one, low, high in zip(found, *ends, strict=True)
-        ]
-        for k, name in enumerate(("torque_laws_low", "torque_laws_high")):
-            variables[name] = (dims, np.array([pair[k] for pair in wide]).reshape(shape), {"units": "N m"})
-    record = next((one.record for one in found if one is not None and one.record), "")
-    coordinates = {
-        "temperature_c": ("temperature_c", warm, {"units": "C"}),
-        "speed_rpm": ("speed_rpm", speeds, {"units": "rpm"}),
-        "axial_load": ("load", [load[0] for load in loads], {"units": "N"}),
-        "radial_load": ("load", [load[1] for load in loads], {"units": "N"}),
-        "source": ("source", list(SOURCES)),
-    }
-    return xarray.Dataset(
-        variables,
-        coords=coordinates,
-        attrs={
-            "bearing": ", ".join(part.bearing.name for part in scene.parts.values()),
-            "torque_record": record,
-        },
-    )
+        bands = [(np.nan, np.nan, np.nan)] * len(points)
+        for place in range(len(points)):
+            settled = [rows[place, d]["torque"] for d in range(1, draws + 1) if rows[place, d]["settled"]]
+            if len(settled) >= FEWEST:
+                bands[place] = band_of(settled)
+        ends = [(low, high) for low, high, _ in bands]
+        torques("torque_low", [low for low, _ in ends])
+        torques("torque_high", [high for _, high in ends])
+        torques("torque_held", [held for *_, held in bands], "1")
+    laws = [torque_laws(base.build({})[0]) if base is not None else None for base, _ in points.bases]
+    if any(one is not None for one in laws):
+        wide = [(np.nan, np.nan) if one is None else one.band(*pair) for one, pair in zip(laws, ends, strict=True)]
+        torques("torque_laws_low", [low for low, _ in wide])
+        torques("torque_laws_high", [high for _, high in wide])
+    record = next((one.record for one in laws if one is not None and one.record), "")
+    places = points.coordinates | {"source": ("source", list(SOURCES))}
+    return xarray.Dataset(made, places, points.about | {"torque_record": record})

@@ -15,7 +15,7 @@ from scipy.stats import qmc
 
 from trbdyn.base.expected import expect
 from trbdyn.base.shown import Displayed, Shown
-from trbdyn.base.validation import Model, Number
+from trbdyn.base.validation import Model, Number, whole_number_of
 from trbdyn.errors import InputError, unknown_name
 from trbdyn.model.assembly import Assembly, ShaftBearing, Subject
 from trbdyn.model.bearing import Bearing
@@ -299,12 +299,10 @@ def uncertainty(
     """
     expect("scene", subject, Scene, Assembly)
     drawn = checked_bands(open_inputs(subject) if bands is None else bands)
-    for field, value, least in (("samples", samples, FEWEST), ("seed", seed, 0)):
-        if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
-            raise InputError.of(field, value, f"must be a whole number, at least {least}")
+    count, seed = whole_number_of("samples", samples, FEWEST), whole_number_of("seed", seed, 0)
     options = RunOptions(revolutions=5.0, accuracy="fast") if options is None else options
     base = Base.of(subject, options)
-    unit = unit_draws(len(drawn), int(samples), int(seed))
+    unit = unit_draws(len(drawn), count, seed)
     made = [
         Case({"draw": 0}, subject, options),
         *(drawn_case(base, options, drawn, row, k + 1) for k, row in enumerate(unit)),

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from trbdyn.base.expected import expect
 from trbdyn.base.shown import Shown, Tabled
+from trbdyn.base.validation import whole_number_of
 from trbdyn.errors import InputError, unknown_name
 from trbdyn.model.assembly import Assembly, Subject
 from trbdyn.model.estimated import Estimated
@@ -171,8 +172,7 @@ def sensitivity(
     'cup_half_angle_deg'
     """
     expect("scene", subject, Scene, Assembly)
-    if isinstance(starts, bool) or not isinstance(starts, int) or not 2 <= starts <= 1000:
-        raise InputError.of("starts", starts, "must be a whole number from 2 to 1000: one start shows no scatter")
+    starts = whole_number_of("starts", starts, 2, 1000)
     chosen = _chosen(subject, paths)
     name = quantity if isinstance(quantity, str) else getattr(quantity, "__name__", "result")
     options = RunOptions(revolutions=revolutions, accuracy=accuracy)

@@ -8,7 +8,7 @@ of a cage that creeps towards a whirl over thousands of turns is that of its las
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Literal, Unpack
 
@@ -26,7 +26,7 @@ from trbdyn.results.result import Result
 from trbdyn.run.options import RunOptions
 from trbdyn.study.definition import Case
 from trbdyn.study.runner import Running
-from trbdyn.study.settled import failure, run_until_settled
+from trbdyn.study.settled import run_until_settled, variables
 
 if TYPE_CHECKING:
     import xarray
@@ -41,6 +41,18 @@ RECORDS_A_TURN: Final = 32
 GROUPS: Final = ("cage", "rollers", "peaks")
 STARTS: Final = {"equal": Start.equal(), "whirl": Start.whirl(0.9)}
 WHIRLS: Final = "circling"
+ABOUT: Final = {
+    "kind": ("class of the cage's motion", ""),
+    "orbit": ("orbit of the cage over the radial play", "1"),
+    "hits": ("hits of rollers on the cage in a second", "1/s"),
+    "impulse": ("mean impulse of a hit", "N s"),
+    "settled": ("", ""),
+    "turns": ("turns of the cage", "1"),
+    "message": ("", ""),
+}
+"""What is kept of a run."""
+UNKNOWN: Final = {"kind": "unknown", "orbit": np.nan, "hits": np.nan, "impulse": np.nan}
+"""The same of a run that failed."""
 
 Point = tuple[str, float, float | None]
 
@@ -269,7 +281,9 @@ class CageRuns:
         """Run points until they are decided."""
         turns = (*(turns for turns in TURNS if turns < self.longest), self.longest)
         new = [point for point in points if point not in self.rows]
-        self.rows |= run_until_settled(new, turns, lambda point, n: self._case(*point, n), _row, OBSERVED, self.how)
+        self.rows |= run_until_settled(
+            new, turns, lambda point, n: self._case(*point, n), _row, OBSERVED, self.how, UNKNOWN
+        )
 
     def _case(self, start: str, speed: float, load: float | None, turns: float) -> Case:
         changes = {"speed_rpm": speed} | ({} if load is None else {"axial_load": load})
@@ -298,41 +312,25 @@ class CageRuns:
         return sorted(found)
 
     def gathered(self) -> WhirlOnset:
-        import xarray
-
         speeds = sorted({speed for _, speed, _ in self.rows}, key=abs)
         # a speed that was asked of one start only has a row for each
-        rows = [[self.rows[name, speed, None] for speed in speeds] for name in self.starts]
-        variables = variables_of(rows, ("start", "speed_rpm"))
         places = {"start": self.starts, "speed_rpm": ("speed_rpm", speeds, {"units": "rpm"})}
-        return WhirlOnset(xarray.Dataset(variables, places, {"bearing": self.subject.part.bearing.name}))
+        return WhirlOnset(self.dataset([(name, speed, None) for name in self.starts for speed in speeds], places))
+
+    def dataset(self, points: Sequence[Point], places: Mapping[str, Any]) -> xarray.Dataset:
+        """Runs of points, which are listed as the coordinates say, the last changing fastest."""
+        import xarray
+
+        shape = [len(one[1] if isinstance(one, tuple) else one) for one in places.values()]
+        made = variables([self.rows[point] for point in points], ABOUT, list(places), shape)
+        data = xarray.Dataset(made, places, {"bearing": self.subject.part.bearing.name})
+        return data.rename(settled="decided")
 
 
-def variables_of(rows: Sequence[Any], dims: tuple[str, ...]) -> dict[str, Any]:
-    """Variables of a dataset from rows of runs, which are nested as the dimensions say."""
-    flat, shape = np.array(rows, dtype=object).ravel(), np.array(rows, dtype=object).shape
-
-    def column(name: str, kind: Any = None) -> Any:
-        return np.array([row[name] for row in flat], dtype=kind).reshape(shape)
-
-    return {
-        "kind": (dims, column("kind", object), {"long_name": "class of the cage's motion"}),
-        "orbit": (dims, column("orbit"), {"long_name": "orbit of the cage over the radial play", "units": "1"}),
-        "hits": (dims, column("hits"), {"long_name": "hits of rollers on the cage in a second", "units": "1/s"}),
-        "impulse": (dims, column("impulse"), {"long_name": "mean impulse of a hit", "units": "N s"}),
-        "decided": (dims, column("settled", bool)),
-        "turns": (dims, column("turns"), {"long_name": "turns of the cage", "units": "1"}),
-        "message": (dims, column("message", object)),
-    }
-
-
-def _row(found: xarray.Dataset, turns: float) -> dict[str, Any]:
+def _row(found: xarray.Dataset) -> dict[str, Any]:
     """What is kept of a run."""
-    if message := failure(found):
-        unknown = {"kind": "unknown", "orbit": np.nan, "hits": np.nan, "impulse": np.nan}
-        return {**unknown, "settled": False, "turns": turns, "message": message}
     before, last = (KINDS[int(found[name])] for name in ("kind_before", "kind_at_end"))
     orbits = [float(found[name]) for name in ("orbit_before", "orbit_at_end")]
     settled = before == last != "unknown" and abs(orbits[1] - orbits[0]) <= STEADY
     rattle = {"hits": float(found["hits_at_end"]), "impulse": float(found["impulse_at_end"])}
-    return {"kind": last, "orbit": orbits[1], **rattle, "settled": settled, "turns": turns, "message": ""}
+    return {"kind": last, "orbit": orbits[1], **rattle, "settled": settled}
