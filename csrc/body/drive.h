@@ -40,10 +40,6 @@ typedef struct trb_drive {
   double        torque;        /* about its axis, of a ring whose speed is not prescribed, N m */
 } trb_drive;
 
-/* The prescribed pose: displacement and misalignment (rotation vector in the x-y plane), with their rates, and the shaft's speed. */
-void trb_drive_place(const trb_model *m, trb_vec3 displacement, trb_vec3 velocity, const double rotation[2], const double rotation_rate[2],
-                     double shaft_speed, trb_drive *drive);
-
 /* Power that a wrench on a body takes from its drive, W: from the turn about its axis, and from the motion of its place. */
 typedef struct trb_drive_power {
   double shaft, place;

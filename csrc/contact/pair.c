@@ -79,7 +79,6 @@ void trb_workspace_free(trb_workspace *work)
 {
   if (work == NULL) return;
   free(work->lanes);
-  free(work->uneven);
   free(work);
 }
 

@@ -114,8 +114,7 @@ typedef struct trb_pair_kind {
   double (*change)(const trb_model *m, const trb_pair *pair, double speed);
   /* of fast pairs */
   trb_pair_touch *touch;
-  int (*surfaces)(const trb_model *m, int roller);                       /* that it tests for a roller; 0: they never touch */
-  void (*count_clear)(const trb_model *m, int roller, trb_counters *to); /* counts a roller that is proven clear */
+  int (*surfaces)(const trb_model *m, int roller);            /* that it tests for a roller; 0: they never touch */
   void (*ways)(const trb_model *m, int roller, double *ways); /* [mode][gap]: longest way of what may touch, for a unit of amplitude, m/m */
   double (*stiffness)(const trb_model *m, double depth);      /* load over interference at an interference, N/m */
   /* of pairs without a roller, which have nothing of the others */
@@ -177,18 +176,6 @@ static inline trb_contact *trb_pair_contacts(const trb_model *m, const trb_pair 
 /* variant: name of a kernel variant, "" for the fastest that this machine runs. */
 trb_status trb_workspace_create(const trb_pair *pairs, int n_pairs, const char *variant, trb_workspace **work, trb_message *message);
 void       trb_workspace_free(trb_workspace *work);
-
-/* Zero the chosen rollers' loads and sum every pair that is on. */
-void trb_contact_all(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_loads *loads, trb_detail *detail);
-
-/* Zero the chosen rollers' loads and sum the slow pairs only. */
-void trb_contact_slow(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_loads *loads, trb_detail *detail);
-
-/* The same for the slow pairs on one body only. */
-void trb_contact_slow_of(const trb_model *m, const trb_instant *at, int body, trb_workspace *work, trb_loads *loads);
-
-/* Zero the loads and sum the pairs without a roller; wrenches in R. detail may be NULL. */
-void trb_contact_hub(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_loads *loads, trb_detail *detail);
 
 /* Buffers of every intermediate quantity; freed by trb_detail_free. */
 trb_status trb_detail_create(const trb_model *m, const trb_pair *pairs, int n_pairs, trb_detail **detail, trb_message *message);

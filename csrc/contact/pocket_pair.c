@@ -68,12 +68,6 @@ static void ways_of(const trb_model *m, int roller, double *ways)
 
 static int faces_of(const trb_model *m, int roller) { return m->first_face[roller + 1] - m->first_face[roller]; }
 
-static void count_clear(const trb_model *m, int roller, trb_counters *to)
-{
-  to->pocket_tests += faces_of(m, roller);
-  to->pocket_culled += faces_of(m, roller);
-}
-
 /* Of the flank. */
 static double stiffness_of(const trb_model *m, double depth)
 {
@@ -89,7 +83,6 @@ static double stiffness_of(const trb_model *m, double depth)
    .evaluate = trb_contact_pocket, \
    .touch = trb_contact_pocket_of, \
    .surfaces = faces_of, \
-   .count_clear = count_clear, \
    .arms = arms_of, \
    .ways = ways_of, \
    .stiffness = stiffness_of}

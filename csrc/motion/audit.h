@@ -2,7 +2,7 @@
 #ifndef TRB_MOTION_AUDIT_H
 #define TRB_MOTION_AUDIT_H
 
-#include "motion/dynamics.h"
+#include "motion/rhs.h"
 
 /* Kinetic energy of rollers and of the bodies of the hub at the poses kept, J. */
 double trb_audit_kinetic(const trb_dynamics *d);

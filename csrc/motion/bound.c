@@ -3,60 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-void trb_bound_set(const trb_model *m, trb_bound *bound, const trb_gaps *gaps, const double *y_roller, const double *y_body)
-{
-  const double far = fabs(y_roller[TRB_ROLLER_r]) + fabs(y_roller[TRB_ROLLER_z]) + fabs(y_body[0]) + fabs(y_body[1]) + fabs(y_body[2]);
-  /* a gap that is not a number (NaN) proves nothing */
-  for (int g = 0; g < TRB_N_GAPS; g++)
-    bound->length[g] = far < trb_bound_play(m) && gaps->of[g] > 0.0 ? trb_min(gaps->of[g], trb_bound_play(m)) : 0.0;
-  memcpy(bound->roller, y_roller, sizeof bound->roller);
-  memcpy(bound->body, y_body, sizeof bound->body);
-}
-
-/* Adds what has changed of each gap, at most. */
-static inline void add_ways(const trb_bound *bound, const trb_arms *arms, const double *y_roller, const double *y_body,
-                            double ways[TRB_N_GAPS])
-{
-  for (int i = 0; i < TRB_PLACE_OF_ROLLER; i++) {
-    const double moved = fabs(y_roller[i] - bound->roller[i]);
-    for (int g = 0; g < TRB_N_GAPS; g++) ways[g] += arms[g].roller[i] * moved;
-  }
-  for (int i = 0; i < TRB_PLACE_OF_BODY; i++) {
-    const double moved = fabs(y_body[i] - bound->body[i]);
-    for (int g = 0; g < TRB_N_GAPS; g++) ways[g] += arms[g].body[i] * moved;
-  }
-}
-
-int trb_bound_clear(const trb_bound *bound, const trb_arms *arms, const double *deformed, const double *y_roller, const double *y_body)
-{
-  double ways[TRB_N_GAPS] = {0};
-  if (!(bound->length[TRB_GAP_FLANK] > 0.0 && bound->length[TRB_GAP_ENDS] > 0.0)) return 0;
-  if (deformed != NULL) memcpy(ways, deformed, sizeof ways);
-  add_ways(bound, arms, y_roller, y_body, ways);
-  /* where a coordinate is not a number (NaN) both comparisons are false: nothing is proven */
-  return ways[TRB_GAP_FLANK] < bound->length[TRB_GAP_FLANK] && ways[TRB_GAP_ENDS] < bound->length[TRB_GAP_ENDS];
-}
-
-int trb_bound_clear_within(const trb_bound *bound, const trb_arms *arms, const double *y_roller, const double *y_body,
-                           const double *of_roller, const double *of_body)
-{
-  double ways[TRB_N_GAPS] = {0};
-  add_ways(bound, arms, y_roller, y_body, ways);
-  for (int g = 0; g < TRB_N_GAPS; g++) {
-    for (int i = 0; i < TRB_PLACE_OF_ROLLER; i++) ways[g] += arms[g].roller[i] * of_roller[i];
-    for (int i = 0; i < TRB_PLACE_OF_BODY; i++) ways[g] += arms[g].body[i] * of_body[i];
-  }
-  return ways[TRB_GAP_FLANK] < bound->length[TRB_GAP_FLANK] && ways[TRB_GAP_ENDS] < bound->length[TRB_GAP_ENDS];
-}
-
-double trb_bound_left(const trb_bound *bound, const trb_arms *arms, const double *deformed, const double *y_roller, const double *y_body)
-{
-  double ways[TRB_N_GAPS] = {0};
-  if (deformed != NULL) memcpy(ways, deformed, sizeof ways);
-  add_ways(bound, arms, y_roller, y_body, ways);
-  return fmin(bound->length[TRB_GAP_FLANK] - ways[TRB_GAP_FLANK], bound->length[TRB_GAP_ENDS] - ways[TRB_GAP_ENDS]);
-}
-
 /* Across the bearing's axis. */
 static double across(trb_vec3 v) { return fabs(v.x) + fabs(v.y); }
 

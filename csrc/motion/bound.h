@@ -23,17 +23,6 @@ typedef struct trb_bound {
   double body[TRB_PLACE_OF_BODY];
 } trb_bound;
 
-/* Of the gaps of a fast pair: nothing is proven where one is not above zero, or not a number. */
-void trb_bound_set(const trb_model *m, trb_bound *bound, const trb_gaps *gaps, const double *y_roller, const double *y_body);
-/* Whether the roller is proven not to touch the body. deformed: ways by which the body's surfaces have moved by its deformation since then, of
- * each gap, m; NULL: it is rigid. */
-int trb_bound_clear(const trb_bound *bound, const trb_arms *arms, const double *deformed, const double *y_roller, const double *y_body);
-/* Whether it is proven not to touch a rigid body as long as their coordinates are within these ways of the given ones. */
-int trb_bound_clear_within(const trb_bound *bound, const trb_arms *arms, const double *y_roller, const double *y_body,
-                           const double *of_roller, const double *of_body);
-/* Lower bound of the gap that is left, m; not above 0: the roller may touch. */
-double trb_bound_left(const trb_bound *bound, const trb_arms *arms, const double *deformed, const double *y_roller, const double *y_body);
-
 /* How a ring stands off the bearing's axis, and how far it has moved since a bound was found. */
 typedef struct trb_ring_offset {
   double lean;            /* distance of its axis, a unit vector, from the bearing's */

@@ -1,8 +1,8 @@
-/* Newton's and Euler's equations of each roller and each body of the hub, in frames that orbit with them
- * (docs/theory/motion.md#newtons-equations): the parts of which motion/rhs.h makes the right-hand side. */
+/* What the right-hand side (motion/rhs.h) of a system is evaluated with: poses, loads and flows of all rollers and bodies, and scratch. */
 #ifndef TRB_MOTION_DYNAMICS_H
 #define TRB_MOTION_DYNAMICS_H
 
+#include "base/memory.h"
 #include "motion/bound.h"
 #include "motion/ring_motion.h"
 #include "system/system.h"
@@ -21,8 +21,9 @@ enum {
 /* A pair that is evaluated at every instant, and what is proven of every roller in it. */
 typedef struct trb_fast_pair {
   const trb_pair *pair;
-  int             row;    /* its number in the system */
-  trb_bound      *bounds; /* n_rollers */
+  int             row;      /* its number in the system */
+  int            *surfaces; /* of every roller: how many the pair tests for it; 0: they never touch */
+  trb_bound      *bounds;   /* of every roller */
   trb_arms        arms[TRB_N_GAPS];
   /* where the other body deforms; NULL where it does not */
   int    *places; /* [mode]: of its amplitude in the state */
@@ -39,7 +40,6 @@ typedef struct trb_dynamics {
   trb_roller_pose  *rollers;                  /* at the last state evaluated */
   trb_body_at       bodies[TRB_MOST_BODIES];  /* of the system, at the last time and state evaluated */
   trb_wrench        on_body[TRB_MOST_BODIES]; /* load of the right-hand side under way on each of them, in R */
-  int               spin_at, quadrature;      /* where the tail of the state begins, and its quadratures */
   trb_loads        *loads;                    /* of every roller */
   trb_loads         hub;                      /* of pairs without a roller, in R; zero where there are none */
   int              *everyone;                 /* 0, 1, ...: all rollers */
@@ -52,6 +52,7 @@ typedef struct trb_dynamics {
   double     *spin;               /* angle that each roller has turned by, rad; NULL: all surfaces have their true form */
   unsigned   *near;               /* of every roller: bit by fast pair, those that may touch */
   double     *held;               /* scratch: a state whose rollers a spacer holds; NULL: there is none */
+  trb_memory  memory;             /* of all arrays */
 } trb_dynamics;
 
 /* motion may be NULL where only poses that the caller places are used. */
@@ -59,55 +60,16 @@ trb_status trb_dynamics_create(const trb_system *system, const trb_motion *motio
                                trb_message *message);
 void       trb_dynamics_free(trb_dynamics *dynamics);
 
-/* What is prescribed at a time, and where bodies without coordinates are then; kept in the dynamics. */
-void trb_dynamics_drive(trb_dynamics *d, double time);
-/* Bodies without coordinates where the drive that is kept puts them. */
-void trb_dynamics_place(trb_dynamics *d);
-/* A state with its rollers where a spacer holds them, and the drive of its time kept; the state itself where there is none. */
-const double *trb_dynamics_held(trb_dynamics *d, double time, const double *y);
-/* Poses at (t, y), kept in the dynamics. */
-void trb_dynamics_pose(trb_dynamics *d, double time, const double *y);
-/* Poses of the bodies of the hub only. */
-void trb_dynamics_pose_hub(trb_dynamics *d, const double *y);
-/* Pose of one body of the hub only, from its part of a state. */
-void trb_dynamics_pose_body(trb_dynamics *d, int body, const double *y_body);
-/* The angle that a roller has turned by about its axis, out of a state, is kept, where surfaces are off their true form; gives whether one of
- * them may be where the roller is. Rings stand where they were put. */
-int trb_dynamics_spin_roller(trb_dynamics *d, int roller, const double *y);
-/* The longest step that steps over no part of such a surface, at the speeds that are kept, s. */
-double trb_dynamics_longest_step(const trb_dynamics *d);
-/* Pose of one roller only, from its part of a state; rings stand where they were put. */
-void trb_dynamics_pose_roller(trb_dynamics *d, int roller, const double *y_roller);
-/* A ring as a roller sees it at a pose. */
-trb_ring_pose trb_dynamics_ring_seen(const trb_dynamics *d, int body, const trb_roller_pose *roller);
-/* All loads at the poses kept; detail may be NULL. */
-void trb_dynamics_loads(trb_dynamics *d, trb_detail *detail);
-/* The same without the pairs that are proven not to touch, which changes no bit of the loads; apart: see trb_fast_apart, may be NULL. */
-void trb_dynamics_loads_of(trb_dynamics *d, const unsigned *apart, trb_detail *detail);
-/* What the contacts read, all surfaces of true form. */
-trb_instant trb_dynamics_instant(const trb_dynamics *d);
+/* What the contacts read at the poses kept, of n chosen rollers; all surfaces of true form. */
+static inline trb_instant trb_dynamics_instant(const trb_dynamics *d, const int *chosen, int n)
+{
+  return (trb_instant){.drive = &d->drive, .rollers = d->rollers, .bodies = d->bodies, .chosen = chosen, .n = n};
+}
 
-void trb_dynamics_roller_flow(const trb_dynamics *d, int roller, const trb_loads *loads, double *flow);
-/* What a roller's loads do to the rings that have coordinates, in R; its pose is kept. */
-void trb_dynamics_roller_reactions(const trb_dynamics *d, int roller, const trb_loads *loads, trb_wrench *reactions);
 /* Where a roller's reactions are kept. */
 static inline trb_wrench *trb_dynamics_reactions(const trb_dynamics *d, int roller)
 {
   return d->reactions + (size_t)roller * (size_t)d->system->n_moving;
 }
-/* Adds the kept reactions of a roller to the loads of the bodies. */
-void trb_dynamics_add_reactions(trb_dynamics *d, int roller);
-
-/* A right-hand side is made in four steps: start it, put in the flow of each roller (with its fast pairs), add the pairs without a roller, put in the rates of
- * the hub. */
-void trb_dynamics_start(trb_dynamics *d, double *rates);
-void trb_dynamics_put(const trb_dynamics *d, int roller, const double *flow, double *rates);
-/* Adds the loads of pairs without a roller to those of the hub's bodies and their powers to the quadratures of the rates. */
-void trb_dynamics_add_hub(trb_dynamics *d, double *rates);
-/* Adds what bodies lose in themselves, at the poses kept, to a list of losses. */
-void trb_dynamics_book_bodies(const trb_dynamics *d, double *losses);
-void trb_dynamics_put_hub(const trb_dynamics *d, const double *y, double *rates);
-/* Rates of a body at its pose under a load, by coordinate; of a carried body, whose coordinates another system has, what the load adds. */
-void trb_dynamics_body_rates(const trb_dynamics *d, int body, const double *y, const trb_wrench *load, double *rates);
 
 #endif

@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "bearing/ribs.h"
+#include "body/ring.h"
+#include "motion/rhs.h"
 #include "system/system.h"
 
 /* Near the largest radial load hardly loaded rollers let go and are caught again, and Newton's method is slow: from USUAL_STEPS on it ends
@@ -77,8 +79,8 @@ static const double difference[N] = {TRB_STEP_LENGTH, TRB_STEP_LENGTH, TRB_STEP_
 static const double ring_difference[TRB_RING_FREEDOMS] = {TRB_STEP_LENGTH, TRB_STEP_LENGTH, TRB_STEP_LENGTH, TRB_STEP_ANGLE,
                                                           TRB_STEP_ANGLE};
 
-/* All bodies are placed at rest: without sliding and rolling the contacts have no friction. */
-static void place(solver *s, const double *rollers, const double *displacement)
+/* Loads of the slow pairs where all bodies are placed at rest: without sliding and rolling the contacts have no friction. */
+static void load(solver *s, const double *rollers, const double *displacement, trb_detail *detail)
 {
   const trb_model *m = s->m;
   trb_drive       *drive = &s->d->drive;
@@ -96,6 +98,8 @@ static void place(solver *s, const double *rollers, const double *displacement)
     y[TRB_ROLLER_psi] = s->e->angles[j] - trb_nominal_angle(m, j);
     trb_dynamics_pose_roller(s->d, j, y);
   }
+  const trb_instant at = trb_dynamics_instant(s->d, s->d->everyone, m->n_rollers);
+  trb_dynamics_slow(s->d, &at, TRB_ANY_BODY, detail);
 }
 
 /* Adds the force that leads a cylindrical roller back along its axis; gives its potential. */
@@ -119,9 +123,7 @@ static double evaluate(solver *s, const double *rollers, const double *displacem
   /* the same for a skewed roller, about n */
   const double spin = orbit * cos(g->roller_axis_angle) * g->roller_inertia_axial * rolling.omega_a;
   double       energy = 0.0;
-  place(s, rollers, displacement);
-  const trb_instant at = trb_dynamics_instant(s->d);
-  trb_contact_slow(m, &at, s->d->work, s->d->loads, NULL);
+  load(s, rollers, displacement, NULL);
   for (int j = 0; j < m->n_rollers; j++) {
     const trb_wrench      *l = &s->d->loads[j].roller, *on_ring = &s->d->loads[j].on[s->d->system->driven];
     const trb_roller_pose *r = &s->d->rollers[j];
@@ -413,9 +415,7 @@ static trb_status read_loads(solver *s, trb_message *message)
   trb_status        status = trb_detail_create(s->m, system->pairs, system->n_pairs, &detail, message);
   if (status != TRB_OK) return status;
   trb_detail_clear(s->m, detail);
-  place(s, s->e->rollers, s->e->displacement);
-  const trb_instant at = trb_dynamics_instant(s->d);
-  trb_contact_slow(s->m, &at, s->d->work, s->d->loads, detail);
+  load(s, s->e->rollers, s->e->displacement, detail);
   for (int j = 0; j < s->m->n_rollers; j++)
     for (int row = 0; row < TRB_EQUILIBRIUM_LOADS; row++) {
       const trb_contact *contact = &trb_pair_contacts(s->m, &system->pairs[row], detail)[j];
@@ -430,9 +430,7 @@ static void read_other(solver *s)
 {
   double *sum = s->e->on_other;
   memset(sum, 0, sizeof s->e->on_other);
-  place(s, s->e->rollers, s->e->displacement);
-  const trb_instant at = trb_dynamics_instant(s->d);
-  trb_contact_slow(s->m, &at, s->d->work, s->d->loads, NULL);
+  load(s, s->e->rollers, s->e->displacement, NULL);
   for (int b = 0; b < s->d->system->n_bodies; b++)
     for (int j = 0; j < s->m->n_rollers && b != s->d->system->driven && trb_is_ring(s->d->system->bodies[b].kind); j++) {
       const trb_wrench      *on = &s->d->loads[j].on[b];

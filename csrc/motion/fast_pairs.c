@@ -1,60 +1,57 @@
 #include "motion/fast_pairs.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
-
-/* What a fast pair with a body that deforms keeps of its modes. */
-static int add_modes(const trb_dynamics *d, trb_fast_pair *fast)
+void trb_bound_set(const trb_model *m, trb_bound *bound, const trb_gaps *gaps, const double *y_roller, const double *y_body)
 {
-  const trb_body *body = &d->system->bodies[fast->pair->b];
-  const size_t    n = (size_t)body->modes->n, rollers = (size_t)d->model->n_rollers;
-  fast->places = calloc(n, sizeof *fast->places);
-  fast->ways = trb_zeros(rollers * n * TRB_N_GAPS, sizeof *fast->ways);
-  fast->modal = trb_zeros(rollers * n, sizeof *fast->modal);
-  if (fast->places == NULL || fast->ways == NULL || fast->modal == NULL) return 0;
-  for (size_t j = 0; j < rollers; j++) fast->pair->kind->ways(d->model, (int)j, fast->ways + j * TRB_N_GAPS * n);
-  for (size_t i = 0; i < n; i++) {
-    double per[2];
-    fast->places[i] = body->first + body->kind->amplitude(body, (int)i, per);
-    for (size_t j = 0; j < rollers; j++)
-      for (int g = 0; g < TRB_N_GAPS; g++) fast->ways[(j * n + i) * TRB_N_GAPS + (size_t)g] *= per[0];
-  }
-  return 1;
+  const double far = fabs(y_roller[TRB_ROLLER_r]) + fabs(y_roller[TRB_ROLLER_z]) + fabs(y_body[0]) + fabs(y_body[1]) + fabs(y_body[2]);
+  /* a gap that is not a number (NaN) proves nothing */
+  for (int g = 0; g < TRB_N_GAPS; g++)
+    bound->length[g] = far < trb_bound_play(m) && gaps->of[g] > 0.0 ? trb_min(gaps->of[g], trb_bound_play(m)) : 0.0;
+  memcpy(bound->roller, y_roller, sizeof bound->roller);
+  memcpy(bound->body, y_body, sizeof bound->body);
 }
 
-int trb_fast_create(trb_dynamics *d)
+/* Adds what has changed of each gap, at most. */
+static inline void add_ways(const trb_bound *bound, const trb_arms *arms, const double *y_roller, const double *y_body,
+                            double ways[TRB_N_GAPS])
 {
-  for (int i = 0; i < d->work->n_batches; i++)
-    for (int k = 0; k < d->work->batches[i].n; k++) {
-      const trb_pair *pair = d->work->batches[i].pairs[k];
-      if (pair->kind->pace != TRB_PACE_FAST) continue;
-      trb_fast_pair *fast = &d->fast[d->n_fast];
-      fast->pair = pair;
-      fast->row = d->work->batches[i].index[k];
-      fast->bounds = calloc((size_t)d->model->n_rollers, sizeof *fast->bounds);
-      if (fast->bounds == NULL) return 0;
-      d->n_fast++;
-      pair->kind->arms(d->model, pair, fast->arms);
-      if (d->system->bodies[pair->b].modes != NULL && !add_modes(d, fast)) return 0;
-    }
-  return 1;
+  for (int i = 0; i < TRB_PLACE_OF_ROLLER; i++) {
+    const double moved = fabs(y_roller[i] - bound->roller[i]);
+    for (int g = 0; g < TRB_N_GAPS; g++) ways[g] += arms[g].roller[i] * moved;
+  }
+  for (int i = 0; i < TRB_PLACE_OF_BODY; i++) {
+    const double moved = fabs(y_body[i] - bound->body[i]);
+    for (int g = 0; g < TRB_N_GAPS; g++) ways[g] += arms[g].body[i] * moved;
+  }
 }
 
-void trb_fast_free(trb_dynamics *d)
+/* Whether ways leave something of every gap; where one is not a number (NaN) the comparisons are false: nothing is proven. */
+static int holds(const trb_bound *bound, const double ways[TRB_N_GAPS])
 {
-  for (int f = 0; f < d->n_fast; f++) {
-    free(d->fast[f].bounds);
-    free(d->fast[f].places);
-    free(d->fast[f].ways);
-    free(d->fast[f].modal);
-  }
+  return ways[TRB_GAP_FLANK] < bound->length[TRB_GAP_FLANK] && ways[TRB_GAP_ENDS] < bound->length[TRB_GAP_ENDS];
+}
+
+int trb_bound_clear(const trb_bound *bound, const trb_arms *arms, const double *deformed, const double *y_roller, const double *y_body)
+{
+  double ways[TRB_N_GAPS] = {0};
+  if (!holds(bound, ways)) return 0;
+  if (deformed != NULL) memcpy(ways, deformed, sizeof ways);
+  add_ways(bound, arms, y_roller, y_body, ways);
+  return holds(bound, ways);
+}
+
+double trb_bound_left(const trb_bound *bound, const trb_arms *arms, const double *deformed, const double *y_roller, const double *y_body)
+{
+  double ways[TRB_N_GAPS] = {0};
+  if (deformed != NULL) memcpy(ways, deformed, sizeof ways);
+  add_ways(bound, arms, y_roller, y_body, ways);
+  return fmin(bound->length[TRB_GAP_FLANK] - ways[TRB_GAP_FLANK], bound->length[TRB_GAP_ENDS] - ways[TRB_GAP_ENDS]);
 }
 
 /* The part of a state that belongs to the other body of a fast pair. */
-static const double *of_body(const trb_dynamics *d, const trb_fast_pair *fast, const double *y)
+static const double *part_of(const trb_dynamics *d, const trb_fast_pair *fast, const double *y)
 {
   return y + d->system->bodies[fast->pair->b].first;
 }
@@ -82,7 +79,7 @@ static int is_clear(const trb_dynamics *d, const trb_fast_pair *fast, int roller
 {
   double        ways[TRB_N_GAPS];
   const double *deformed = deformed_by(d, fast, roller, y, ways);
-  return trb_bound_clear(&fast->bounds[roller], fast->arms, deformed, y + trb_state_roller(d->system, roller), of_body(d, fast, y));
+  return trb_bound_clear(&fast->bounds[roller], fast->arms, deformed, y + trb_state_roller(d->system, roller), part_of(d, fast, y));
 }
 
 double trb_fast_gap_left(const trb_dynamics *d, int fast, int roller, const double *y)
@@ -90,15 +87,21 @@ double trb_fast_gap_left(const trb_dynamics *d, int fast, int roller, const doub
   const trb_fast_pair *pair = &d->fast[fast];
   double               ways[TRB_N_GAPS];
   const double        *deformed = deformed_by(d, pair, roller, y, ways);
-  return trb_bound_left(&pair->bounds[roller], pair->arms, deformed, y + trb_state_roller(d->system, roller), of_body(d, pair, y));
+  return trb_bound_left(&pair->bounds[roller], pair->arms, deformed, y + trb_state_roller(d->system, roller), part_of(d, pair, y));
 }
 
 int trb_fast_clear_within(const trb_dynamics *d, int fast, int roller, const double *y, const double *of_roller, const double *of_hub)
 {
   const trb_fast_pair *pair = &d->fast[fast];
-  const double        *ways = of_hub + d->system->bodies[pair->pair->b].first - trb_state_hub(d->system);
-  return trb_bound_clear_within(&pair->bounds[roller], pair->arms, y + trb_state_roller(d->system, roller), of_body(d, pair, y), of_roller,
-                                ways);
+  const trb_bound     *bound = &pair->bounds[roller];
+  const double        *of_body = of_hub + d->system->bodies[pair->pair->b].first - trb_state_hub(d->system);
+  double               ways[TRB_N_GAPS] = {0};
+  add_ways(bound, pair->arms, y + trb_state_roller(d->system, roller), part_of(d, pair, y), ways);
+  for (int g = 0; g < TRB_N_GAPS; g++) {
+    for (int i = 0; i < TRB_PLACE_OF_ROLLER; i++) ways[g] += pair->arms[g].roller[i] * of_roller[i];
+    for (int i = 0; i < TRB_PLACE_OF_BODY; i++) ways[g] += pair->arms[g].body[i] * of_body[i];
+  }
+  return holds(bound, ways);
 }
 
 void trb_fast_apart(const trb_dynamics *d, const double *y, unsigned *apart)
@@ -119,23 +122,26 @@ void trb_fast_forget(trb_dynamics *d)
 
 unsigned trb_fast_near(const trb_dynamics *d, int roller, const double *y)
 {
-  const trb_model *m = d->model;
-  unsigned         near = 0;
+  unsigned near = 0;
   for (int f = 0; f < d->n_fast; f++) {
     const trb_fast_pair *fast = &d->fast[f];
-    if (fast->pair->kind->surfaces(m, roller) == 0) continue;
-    if (is_clear(d, fast, roller, y)) fast->pair->kind->count_clear(m, roller, &d->work->counters);
-    else near |= 1U << f;
+    if (fast->surfaces[roller] == 0) continue;
+    if (!is_clear(d, fast, roller, y)) {
+      near |= 1U << f;
+      continue;
+    }
+    d->work->counters.pocket_tests += fast->surfaces[roller];
+    d->work->counters.pocket_culled += fast->surfaces[roller];
   }
   return near;
 }
 
 trb_gaps trb_fast_touch(trb_dynamics *d, int fast, int roller, const double *y, trb_load *load, trb_slopes *slopes, trb_detail *detail)
 {
-  const trb_instant at = trb_dynamics_instant(d);
+  const trb_instant at = trb_dynamics_instant(d, NULL, 0);
   trb_fast_pair    *pair = &d->fast[fast];
   const trb_gaps    gaps = pair->pair->kind->touch(d->model, pair->pair, &at, roller, &d->work->counters, load, slopes, detail);
-  trb_bound_set(d->model, &pair->bounds[roller], &gaps, y + trb_state_roller(d->system, roller), of_body(d, pair, y));
+  trb_bound_set(d->model, &pair->bounds[roller], &gaps, y + trb_state_roller(d->system, roller), part_of(d, pair, y));
   const trb_modes *modes = d->system->bodies[pair->pair->b].modes;
   for (int i = 0; modes != NULL && i < modes->n; i++) pair->modal[roller * modes->n + i] = y[pair->places[i]];
   return gaps;

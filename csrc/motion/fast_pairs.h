@@ -5,9 +5,13 @@
 
 #include "motion/dynamics.h"
 
-/* The fast pairs of the workspace; 0: no memory. What was made is freed in either case. */
-int  trb_fast_create(trb_dynamics *d);
-void trb_fast_free(trb_dynamics *d);
+/* What is proven of the gaps of a fast pair: nothing where one is not above zero, or not a number. */
+void trb_bound_set(const trb_model *m, trb_bound *bound, const trb_gaps *gaps, const double *y_roller, const double *y_body);
+/* Whether the roller is proven not to touch the body. deformed: ways by which the body's surfaces have moved by its deformation since then, of
+ * each gap, m; NULL: it is rigid. */
+int trb_bound_clear(const trb_bound *bound, const trb_arms *arms, const double *deformed, const double *y_roller, const double *y_body);
+/* Lower bound of the gap that is left, m; not above 0: the roller may touch. */
+double trb_bound_left(const trb_bound *bound, const trb_arms *arms, const double *deformed, const double *y_roller, const double *y_body);
 
 /* Forget what was proven at earlier states. */
 void trb_fast_forget(trb_dynamics *d);

@@ -160,8 +160,7 @@ static void pose(trb_peak_look *p, int j, const double *y)
 /* Pairs without a roller; the poses of the bodies are kept. */
 static void look_at_hub(trb_peak_look *p, double *values)
 {
-  const trb_instant at = trb_dynamics_instant(p->d);
-  if (p->d->work->n_hub > 0) trb_contact_hub(&p->normal, &at, p->d->work, &p->d->hub, p->detail);
+  if (p->d->work->n_hub > 0) trb_dynamics_hub(p->d, p->detail);
   write(p, TRB_PEAK_land_force, 0, p->detail->land.force, values);
   write(p, TRB_PEAK_land_gap, 0, p->detail->land.gap, values);
 }
@@ -171,12 +170,10 @@ static void look_at_slow(trb_peak_look *p, const double *y, double *values)
   const trb_model *m = &p->normal;
   const int        z = m->n_rollers;
   trb_dynamics    *d = p->d;
-  trb_instant      at = trb_dynamics_instant(d);
   int              chosen[TRB_TILE_LANES];
-
-  trb_ring_offset offsets[TRB_MOST_BODIES];
+  trb_instant      at = trb_dynamics_instant(d, chosen, 0);
+  trb_ring_offset  offsets[TRB_MOST_BODIES];
   trb_ring_offsets_of(d->system, d->bodies, offsets);
-  at.chosen = chosen;
   at.spin = d->spin;
   for (int i = 0; i < d->work->n_batches; i++) {
     const trb_batch *batch = &d->work->batches[i];

@@ -57,7 +57,7 @@ void trb_record_fill(trb_dynamics *d, const unsigned *apart, double time, const 
   seen.detail.lanes = seen.detail.pocket_interference = NULL;
   trb_dynamics_pose(d, time, y);
   trb_detail_clear(d->model, &seen.detail);
-  trb_dynamics_loads_of(d, apart, &seen.detail);
+  trb_dynamics_loads(d, apart, &seen.detail);
   d->work->counters = keep; /* looking is not integrating */
   for (int i = 0; i < TRB_N_FIELDS; i++) {
     const int size = trb_field_size(d->system, i);

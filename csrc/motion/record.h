@@ -2,7 +2,7 @@
 #ifndef TRB_MOTION_RECORD_H
 #define TRB_MOTION_RECORD_H
 
-#include "motion/dynamics.h"
+#include "motion/rhs.h"
 #include "motion/fields.h"
 
 typedef struct trb_field_info {

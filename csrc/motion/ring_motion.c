@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "body/ring.h"
+
 static const double *row_of(const trb_motion *motion, int i) { return motion->table + (size_t)i * TRB_MOTION_COLUMNS; }
 
 /* Whether the time of a knot is above that of the knot before it, or the same, once: a kink or a step. */

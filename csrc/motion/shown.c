@@ -121,7 +121,7 @@ static void show_roller(const trb_seen *seen, double *const *to)
     const double          *y = seen->y + trb_state_roller(d->system, j);
     const trb_roller_pose *r = &d->rollers[j];
     const double           kinematic = -d->model->geometry.roller_spin_ratio * drive->rolling_angle;
-    const trb_frame        spinning = spun(&r->frame, kinematic + seen->y[d->spin_at + j]);
+    const trb_frame        spinning = spun(&r->frame, kinematic + seen->y[trb_state_spin(d->system) + j]);
     const trb_frame        body = {from_orbit(drive, r, spinning.n), from_orbit(drive, r, spinning.t), from_orbit(drive, r, spinning.a)};
     put3(to[ROLLER_position] + 3 * j, from_orbit(drive, r, r->x));
     put_quaternion(to[ROLLER_orientation] + 4 * j, &body);
@@ -214,7 +214,8 @@ static void show_energy(const trb_seen *seen, double *const *to)
   const trb_dynamics *d = seen->d;
   *to[0] = trb_audit_kinetic(d);
   *to[1] = trb_audit_elastic(d);
-  for (int k = 0; k < TRB_N_QUADRATURES; k++) *to[2 + k] = k < trb_n_quadratures(d->system) ? seen->y[d->quadrature + k] : 0.0;
+  for (int k = 0; k < TRB_N_QUADRATURES; k++)
+    *to[2 + k] = k < trb_n_quadratures(d->system) ? seen->y[trb_state_quadrature(d->system) + k] : 0.0;
 }
 
 #define ONE(...) +1

@@ -74,7 +74,7 @@ PyObject *trb_python_contacts(PyObject *object, PyObject *args)
   trb_dynamics *onlooker = s->parts[k].onlooker;
   trb_dynamics_pose(onlooker, time, PyArray_DATA(array));
   trb_detail_clear(onlooker->model, s->parts[k].detail);
-  trb_dynamics_loads(onlooker, s->parts[k].detail);
+  trb_dynamics_loads(onlooker, NULL, s->parts[k].detail);
   PyObject *out = PyDict_New();
   if (out != NULL && trb_put_contacts(onlooker->system, s->parts[k].detail, onlooker->loads, &onlooker->hub, out) != 0) Py_CLEAR(out);
   trb_python_leave(self, 0);

@@ -143,7 +143,7 @@ void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_mot
       const trb_fast_pair  *fast = &d->fast[f];
       const trb_rigid_pose *body = &impacts->bodies[fast->pair->b].pose;
       trb_roller_pose       r;
-      if (fast->pair->kind->surfaces(m, j) == 0) continue;
+      if (fast->surfaces[j] == 0) continue;
       trb_approach now = {.left = trb_fast_gap_left(d, f, j, y), .speed = closing_at_most(m, &drive, y_roller, body), .rise = rise[f]};
       if (!is_far(now.left, step, now.speed)) {
         trb_roller_pose_unpack_centre(m, &drive, j, y_roller, &r);

@@ -147,12 +147,12 @@ static void read(const trb_integrator *it, double time, double *y)
   double               at[TRB_COURSE_ROOM];
   trb_course_at(&hub->course, time, hub->course.n, at);
   memcpy(y + hub->first, at, (size_t)hub->course.main * sizeof *y);
-  memcpy(y + d->quadrature, at + hub->course.main, (size_t)s->n_quadratures * sizeof *y);
+  memcpy(y + trb_state_quadrature(d->system), at + hub->course.main, (size_t)s->n_quadratures * sizeof *y);
   for (int j = 0; j < s->n_rollers; j++) {
     trb_course_at(&s->movers[j].course, time, TRB_FLOW_SIZE, at);
     memcpy(y + s->movers[j].first, at, TRB_NR * sizeof *y);
-    y[d->spin_at + j] = at[TRB_FLOW_spin];
-    for (int k = 0; k < n; k++) y[d->quadrature + k] += at[TRB_FLOW_quadrature + k];
+    y[trb_state_spin(d->system) + j] = at[TRB_FLOW_spin];
+    for (int k = 0; k < n; k++) y[trb_state_quadrature(d->system) + k] += at[TRB_FLOW_quadrature + k];
   }
 }
 
@@ -228,17 +228,16 @@ static trb_status multirate_restart(trb_integrator *it, trb_message *message)
     b->slopes_at = -INFINITY;
     memcpy(y, s->y + b->first, (size_t)b->course.main * sizeof *y);
     if (is_hub) {
-      memcpy(y + b->course.main, s->y + d->quadrature, (size_t)s->n_quadratures * sizeof *y);
+      memcpy(y + b->course.main, s->y + trb_state_quadrature(d->system), (size_t)s->n_quadratures * sizeof *y);
       memcpy(rates, s->rates + b->first, (size_t)b->course.main * sizeof *y);
-      memcpy(rates + b->course.main, s->rates + d->quadrature, (size_t)s->n_quadratures * sizeof *y);
+      memcpy(rates + b->course.main, s->rates + trb_state_quadrature(d->system), (size_t)s->n_quadratures * sizeof *y);
     } else {
-      y[TRB_FLOW_spin] = s->y[d->spin_at + j];
+      y[TRB_FLOW_spin] = s->y[trb_state_spin(d->system) + j];
       memcpy(rates, d->flows[j], TRB_FLOW_SIZE * sizeof *y);
     }
     trb_course_begin(&b->course, it->time, step, y, rates);
     b->course.wait = TRB_UNTIL_LONGER;
-    for (int f = 0; f < d->n_fast && !is_hub; f++)
-      b->together |= d->fast[f].pair->kind->surfaces(d->model, j) != 0 && !(trb_fast_gap_left(d, f, j, s->y) > 0.0);
+    for (int f = 0; f < d->n_fast && !is_hub; f++) b->together |= d->fast[f].surfaces[j] != 0 && !(trb_fast_gap_left(d, f, j, s->y) > 0.0);
   }
   trb_multirate_list(s);
   return TRB_OK;

@@ -102,9 +102,8 @@ static void add_fast(trb_jacobian *jac, int j, const trb_coupling *k, int other,
  * coordinate at, which was moved by h. Pairs without a roller are evaluated. moved: -1 if none was. */
 static void hub_rates(trb_jacobian *jac, const double *y, int moved, int at, double h, double *rates)
 {
-  trb_dynamics     *d = jac->d;
-  const trb_instant instant = trb_dynamics_instant(d);
-  if (d->work->n_hub > 0) trb_contact_hub(d->model, &instant, d->work, &d->hub, NULL);
+  trb_dynamics *d = jac->d;
+  if (d->work->n_hub > 0) trb_dynamics_hub(d, NULL);
   for (int b = 0; b < d->system->n_bodies; b++) {
     trb_wrench load = d->on_body[b];
     if (b == moved) load = (trb_wrench){trb_axpy(load.force, h, jac->changes[at].force), trb_axpy(load.moment, h, jac->changes[at].moment)};
@@ -246,7 +245,7 @@ static void fill_rings(trb_jacobian *jac, int j, trb_arrow *arrow)
 static void fill_fast(trb_jacobian *jac, int j, const double *y, const double *still, trb_arrow *arrow)
 {
   trb_dynamics     *d = jac->d;
-  const trb_instant at = trb_dynamics_instant(d);
+  const trb_instant at = trb_dynamics_instant(d, NULL, 0);
   trb_arrow_border *border = &arrow->borders[leaf_of(d, j)];
   border->parts = 0U;
   for (int f = 0; f < d->n_fast; f++) {
@@ -272,14 +271,8 @@ void trb_jacobian_renew(trb_jacobian *jacobian, int roller) { jacobian->renewed[
 /* Poses of the hub and of the chosen rollers. */
 static void place(trb_jacobian *jac, double time, const double *y, const int *chosen, int n)
 {
-  trb_dynamics *d = jac->d;
-  memcpy(jac->moved, y, (size_t)trb_state_size(d->system) * sizeof *y);
-  trb_dynamics_drive(d, time);
-  trb_dynamics_pose_hub(d, y);
-  for (int k = 0; k < n; k++) {
-    trb_dynamics_pose_roller(d, chosen[k], y + trb_state_roller(d->system, chosen[k]));
-    (void)trb_dynamics_spin_roller(d, chosen[k], y);
-  }
+  memcpy(jac->moved, y, (size_t)trb_state_size(jac->d->system) * sizeof *y);
+  trb_dynamics_pose_of(jac->d, time, y, chosen, n);
 }
 
 void trb_jacobian_slopes(trb_jacobian *jac, double time, const double *y, const int *chosen, int n)

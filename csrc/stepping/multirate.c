@@ -27,7 +27,7 @@ void trb_multirate_flows(trb_integrator *it, const trb_team *team, double time, 
     trb_rhs_hub(d, s->y, s->rates);
     trb_mover *hub = &s->movers[s->n_rollers];
     memcpy(s->hub_flow, s->rates + hub->first, (size_t)hub->course.main * sizeof(double));
-    memcpy(s->hub_flow + hub->course.main, s->rates + d->quadrature, (size_t)s->n_quadratures * sizeof(double));
+    memcpy(s->hub_flow + hub->course.main, s->rates + trb_state_quadrature(d->system), (size_t)s->n_quadratures * sizeof(double));
     hub->flow = s->hub_flow;
   } else trb_rhs_alone(d, instead, time, team->rollers[0], s->movers[team->rollers[0]].x);
   for (int k = 0; k < team->n; k++) s->movers[team->rollers[k]].flow = d->flows[team->rollers[k]];

@@ -52,8 +52,7 @@ static int is_clear(trb_integrator *it, int roller, double from, double to, int 
     s->at_middle = halvings == most_halvings;
   }
   for (int f = 0; f < d->n_fast; f++)
-    if (d->fast[f].pair->kind->surfaces(d->model, roller) != 0 && !trb_fast_clear_within(d, f, roller, s->y, of_roller, s->ways))
-      open |= 1U << f;
+    if (d->fast[f].surfaces[roller] != 0 && !trb_fast_clear_within(d, f, roller, s->y, of_roller, s->ways)) open |= 1U << f;
   if (open == 0U) return 1;
   trb_dynamics_drive(d, middle);
   trb_dynamics_pose_hub(d, s->y);
@@ -100,8 +99,7 @@ void trb_multirate_leave(trb_integrator *it)
     const int  j = s->together[k];
     trb_mover *b = &s->movers[j];
     int        clear = 1;
-    for (int f = 0; f < d->n_fast && clear; f++)
-      clear = d->fast[f].pair->kind->surfaces(d->model, j) == 0 || trb_fast_gap_left(d, f, j, it->y) > 0.0;
+    for (int f = 0; f < d->n_fast && clear; f++) clear = d->fast[f].surfaces[j] == 0 || trb_fast_gap_left(d, f, j, it->y) > 0.0;
     b->quiet = clear ? b->quiet + 1 : 0;
     if (b->quiet < UNTIL_LEAVES) continue;
     b->together = 0;

@@ -39,12 +39,10 @@ void trb_rings_begin(trb_tangents *t, const trb_dynamics *d, int roller)
 
 void trb_rings_differentiate(trb_tangents *t, trb_dynamics *d, const int *chosen, int n)
 {
-  trb_instant at = trb_dynamics_instant(d);
-  at.chosen = chosen;
-  at.n = n;
+  const trb_instant at = trb_dynamics_instant(d, chosen, n);
   for (int k = 0; k < t->system->n_moving; k++) {
     const int body = t->system->moving[k];
-    trb_contact_slow_of(d->model, &at, body, d->work, d->loads);
+    trb_dynamics_slow(d, &at, body, NULL);
     for (int i = 0; i < n; i++) trb_dynamics_roller_flow(d, chosen[i], &d->loads[chosen[i]], t->partly[chosen[i]]);
     for (int c = 0; c < TRB_RING_IN; c++) {
       const double h = trb_difference[trb_roller_tolerance(trb_ring_like(c))], per = 1.0 / h;
@@ -52,7 +50,7 @@ void trb_rings_differentiate(trb_tangents *t, trb_dynamics *d, const int *chosen
         const trb_roller_pose *r = &d->rollers[chosen[i]];
         trb_ring_move(&d->bodies[body].in_frame[chosen[i]], c, h, r->cosine, r->sine);
       }
-      trb_contact_slow_of(d->model, &at, body, d->work, d->loads);
+      trb_dynamics_slow(d, &at, body, NULL);
       for (int q = 0; q < n; q++) {
         const int         j = chosen[q];
         trb_ring_tangent *ring = trb_tangents_ring_of(t, j, k);

@@ -77,7 +77,7 @@ void trb_tangents_forget(trb_tangents *t)
 
 static void differentiate(trb_tangents *t, trb_dynamics *d, const trb_instant *at, int column, double per)
 {
-  trb_contact_slow(d->model, at, d->work, d->loads, NULL);
+  trb_dynamics_slow(d, at, TRB_ANY_BODY, NULL);
   for (int k = 0; k < at->n; k++) {
     const int    j = at->chosen[k];
     trb_tangent *r = &t->rollers[j];
@@ -103,25 +103,12 @@ static int all_finite(const trb_tangents *t, const int *chosen, int n)
   return sum == 0.0;
 }
 
-/* Poses of the hub and of the chosen rollers. */
-static void pose(trb_dynamics *d, double time, const double *y, const int *chosen, int n)
-{
-  trb_dynamics_drive(d, time);
-  trb_dynamics_pose_hub(d, y);
-  for (int k = 0; k < n; k++) {
-    trb_dynamics_pose_roller(d, chosen[k], y + trb_state_roller(d->system, chosen[k]));
-    (void)trb_dynamics_spin_roller(d, chosen[k], y);
-  }
-}
-
 void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const int *chosen, int n, const double *y, double *moved)
 {
-  const trb_model *m = d->model;
-  const double     time = d->drive.time, frame_speed = d->drive.frame_speed;
-  trb_instant      at = trb_dynamics_instant(d);
-  at.chosen = chosen;
-  at.n = n;
-  trb_contact_slow(m, &at, d->work, d->loads, NULL);
+  const trb_model  *m = d->model;
+  const double      time = d->drive.time, frame_speed = d->drive.frame_speed;
+  const trb_instant at = trb_dynamics_instant(d, chosen, n);
+  trb_dynamics_slow(d, &at, TRB_ANY_BODY, NULL);
   for (int k = 0; k < n; k++) {
     const int    j = chosen[k];
     trb_tangent *r = &t->rollers[j];
@@ -146,11 +133,11 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const int *cho
     differentiate(t, d, &at, c, 1.0 / h);
   }
   if (frame_speed != 0.0) {
-    pose(d, time + turn_difference / fabs(frame_speed), y, chosen, n);
+    trb_dynamics_pose_of(d, time + turn_difference / fabs(frame_speed), y, chosen, n);
     trb_rings_see(t, d, 1);
     differentiate(t, d, &at, TRB_TANGENT_TURN, copysign(1.0 / turn_difference, frame_speed));
   }
-  pose(d, time, y, chosen, n);
+  trb_dynamics_pose_of(d, time, y, chosen, n);
   trb_rings_differentiate(t, d, chosen, n);
   /* these slopes are exact, so tangents are used at once, with a small reach */
   for (int k = 0; k < n && !t->has_slopes; k++) {

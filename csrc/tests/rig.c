@@ -218,7 +218,7 @@ static double largest_push(trb_dynamics *d, const double *y)
 {
   double largest = 0.0;
   trb_dynamics_pose(d, 0.01, y);
-  trb_dynamics_loads(d, NULL);
+  trb_dynamics_loads(d, NULL, NULL);
   for (int j = 0; j < d->model->n_rollers; j++) largest = fmax(largest, trb_norm(d->loads[j].on[TRB_BODY_CAGE].force));
   return largest;
 }

@@ -213,7 +213,7 @@ static void check_shared(pair_of *p, int body, const double *rates)
     for (int j = 0; j < members[k]->model->n_rollers; j++) {
       const trb_roller_pose *r = &p->d[k]->rollers[j];
       const trb_drive       *drive = &p->d[k]->drive;
-      trb_dynamics_loads(p->d[k], NULL);
+      trb_dynamics_loads(p->d[k], NULL, NULL);
       const trb_wrench *on = &p->d[k]->loads[j].on[body];
       of_ring = trb_add(of_ring, trb_turn_z(trb_turn_z(on->force, r->cosine, r->sine), drive->cosine, drive->sine));
       about = trb_add(about, trb_turn_z(trb_turn_z(on->moment, r->cosine, r->sine), drive->cosine, drive->sine));

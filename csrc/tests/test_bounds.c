@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "check.h"
-#include "motion/dynamics.h"
+#include "motion/rhs.h"
 #include "rig.h"
 
 enum { MOST = 512 };
@@ -69,9 +69,10 @@ static void look(bench *b, double turn, const double *y, const stand *s, trb_loa
     ring->centre = trb_add(ring->centre, s->shift[i]);
   }
   for (int j = 0; j < m->n_rollers; j++) trb_dynamics_pose_roller(d, j, y + trb_state_roller(b->system, j));
-  const trb_instant at = trb_dynamics_instant(d);
+  const trb_instant at = trb_dynamics_instant(d, d->everyone, m->n_rollers);
   trb_detail_clear(m, b->detail);
-  trb_contact_slow(m, &at, d->work, loads, b->detail);
+  trb_dynamics_slow(d, &at, TRB_ANY_BODY, b->detail);
+  memcpy(loads, d->loads, (size_t)m->n_rollers * sizeof *loads);
   for (int i = 0; i < b->system->n_pairs; i++) {
     const trb_pair *pair = &b->system->pairs[i];
     for (int j = 0; j < m->n_rollers && pair->on && pair->kind->contact != TRB_CONTACT_NONE; j++) {

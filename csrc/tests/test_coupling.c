@@ -33,7 +33,7 @@ static int loads_at(trb_dynamics *d, int roller, const double *y, trb_load *load
 {
   trb_counters counters = {0};
   trb_dynamics_pose(d, 0.01, y);
-  const trb_instant at = trb_dynamics_instant(d);
+  const trb_instant at = trb_dynamics_instant(d, NULL, 0);
   const trb_gaps    gaps = trb_contact_pocket_of(d->model, &d->system->pairs[TRB_PAIR_pocket], &at, roller, &counters, load, slopes, NULL);
   return !trb_gaps_clear(&gaps) && trb_norm(load->on_b.force) > 0.0;
 }

@@ -116,7 +116,7 @@ static void test_undeformed(void)
 static double energy_at(trb_dynamics *d, const double *y)
 {
   trb_dynamics_pose(d, 0.01, y);
-  trb_dynamics_loads(d, NULL);
+  trb_dynamics_loads(d, NULL, NULL);
   return trb_audit_kinetic(d) + trb_audit_elastic(d);
 }
 
@@ -197,7 +197,7 @@ static void test_gaps_left(void)
         for (int i = 0; i < 4; i++) y[mode_at(b.system, i)] = first[mode_at(b.system, i)] + 0.02 * step * direction[i];
         const int clear = trb_fast_near(b.d, j, y) == 0;
         trb_dynamics_pose(b.d, 0.0, y);
-        const trb_instant at = trb_dynamics_instant(b.d);
+        const trb_instant at = trb_dynamics_instant(b.d, NULL, 0);
         trb_load          now = {0};
         const trb_gaps    left = trb_contact_pocket_of(m, &b.system->pairs[TRB_PAIR_pocket], &at, j, &counters, &now, NULL, NULL);
         const int         touches = counters.pocket_nodes > 0;
@@ -247,7 +247,7 @@ static double balance(const bench *b, double time, const double *y)
 {
   const double *q = y + trb_state_quadrature(b->system);
   trb_dynamics_pose(b->d, time, y);
-  trb_dynamics_loads(b->d, NULL);
+  trb_dynamics_loads(b->d, NULL, NULL);
   double sum = trb_audit_kinetic(b->d) + trb_audit_elastic(b->d) - q[TRB_Q_work_shaft] - q[TRB_Q_work_ring] - q[TRB_Q_work_gravity];
   for (int k = 0; k < b->system->model->n_losses; k++) sum += q[TRB_Q_losses + k];
   return sum;

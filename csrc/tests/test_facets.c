@@ -6,7 +6,6 @@
 #include "check.h"
 #include "contact/pocket_view.h"
 #include "laws/profile.h"
-#include "motion/dynamics.h"
 #include "rig.h"
 #include "surface/sphere.h"
 
@@ -195,7 +194,7 @@ static happened test_same_forces(const trb_params *p, const division *by)
     disturb(&b, state % 3 == 0 ? 0.0 : state % 3 == 1 ? 10.0 : 500.0, y);
     trb_dynamics_pose(b.d, 0.0, y);
     /* a second cage, off the first one, whose pockets are another row of the same kind */
-    trb_instant at = trb_dynamics_instant(b.d);
+    trb_instant at = trb_dynamics_instant(b.d, NULL, 0);
     memcpy(bodies, at.bodies, (size_t)b.system->n_bodies * sizeof *bodies);
     second.b = b.system->n_bodies;
     bodies[second.b] = bodies[b.system->pairs[TRB_PAIR_pocket].b];

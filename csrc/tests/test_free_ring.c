@@ -147,7 +147,7 @@ static double balance(const trb_system *system, const trb_motion *motion, double
   trb_dynamics *d;
   if (!CHECK(trb_dynamics_create(system, motion, "scalar", &d, NULL) == TRB_OK)) exit(1);
   trb_dynamics_pose(d, time, y);
-  trb_dynamics_loads(d, NULL);
+  trb_dynamics_loads(d, NULL, NULL);
   double sum = trb_audit_kinetic(d) + trb_audit_elastic(d) - q[TRB_Q_work_shaft] - q[TRB_Q_work_ring] - q[TRB_Q_work_gravity];
   for (int k = 0; k < system->model->n_losses; k++) sum += q[TRB_Q_losses + k];
   trb_dynamics_free(d);

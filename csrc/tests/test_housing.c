@@ -87,7 +87,7 @@ static double balance(trb_dynamics *d, double time, const double *y)
 {
   const double *q = y + trb_state_quadrature(d->system);
   trb_dynamics_pose(d, time, y);
-  trb_dynamics_loads(d, NULL);
+  trb_dynamics_loads(d, NULL, NULL);
   double sum = trb_audit_kinetic(d) + trb_audit_elastic(d) - q[TRB_Q_work_shaft] - q[TRB_Q_work_ring] - q[TRB_Q_work_gravity];
   for (int k = 0; k < d->model->n_losses; k++) sum += q[TRB_Q_losses + k];
   return sum;

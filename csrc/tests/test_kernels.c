@@ -63,23 +63,23 @@ static void compare(const trb_system *system, const char *variant, const trb_dyn
 static void check_choice(trb_dynamics *d)
 {
   const trb_model *m = d->model;
-  trb_instant      at = trb_dynamics_instant(d);
-  trb_loads        all[12], some[12];
+  trb_instant      at = trb_dynamics_instant(d, d->everyone, m->n_rollers);
+  trb_loads        all[12];
   int              chosen[12], taken[12] = {0};
-  trb_contact_slow(m, &at, d->work, all, NULL);
-  memset(some, 0x55, sizeof some);
-  at.chosen = chosen;
-  at.n = 0;
+  trb_dynamics_slow(d, &at, TRB_ANY_BODY, NULL);
+  memcpy(all, d->loads, sizeof all);
+  memset(d->loads, 0x55, sizeof all);
+  at = trb_dynamics_instant(d, chosen, 0);
   for (int j = 0; j < m->n_rollers; j++) {
     taken[j] = rig_random(&seed) > 0.3;
     if (taken[j]) chosen[at.n++] = j;
   }
-  trb_contact_slow(m, &at, d->work, some, NULL);
+  trb_dynamics_slow(d, &at, TRB_ANY_BODY, NULL);
   for (int j = 0; j < m->n_rollers; j++) {
-    const double *one = (const double *)&all[j], *other = (const double *)&some[j];
+    const double *one = (const double *)&all[j], *other = (const double *)&d->loads[j];
     trb_loads     untouched;
     memset(&untouched, 0x55, sizeof untouched);
-    if (!taken[j]) CHECK(memcmp(&some[j], &untouched, sizeof untouched) == 0);
+    if (!taken[j]) CHECK(memcmp(&d->loads[j], &untouched, sizeof untouched) == 0);
     for (size_t i = 0; taken[j] && i < sizeof all[j] / sizeof *one; i++) CHECK_NEAR(other[i], one[i], 1e-12 * fabs(one[i]));
   }
 }
@@ -101,23 +101,23 @@ static void check_scene(const char *name, const trb_params *params, double speed
     rig_disturb(system, &seed, disturbed);
     trb_detail_clear(m, detail);
     trb_dynamics_pose(exact, 0.01, disturbed);
-    trb_dynamics_loads(exact, detail);
+    trb_dynamics_loads(exact, NULL, detail);
     for (int v = 0; v < trb_n_kernel_variants; v++) {
       trb_dynamics *other;
       if (!trb_kernel_runs(v)) continue;
       const char *variant = trb_kernel_variants[v].name;
       if (!CHECK(trb_dynamics_create(system, motion, variant, &other, NULL) == TRB_OK)) continue;
       trb_dynamics_pose(other, 0.01, disturbed);
-      trb_dynamics_loads(other, NULL);
+      trb_dynamics_loads(other, NULL, NULL);
       compare(system, variant, exact, other, detail);
       memset(&other->work->counters, 0, sizeof other->work->counters);
       check_choice(other);
       memset(&other->work->counters, 0, sizeof other->work->counters);
-      trb_dynamics_loads(other, NULL);
+      trb_dynamics_loads(other, NULL, NULL);
       /* what is evaluated is the same, too */
       trb_counters a = exact->work->counters, b = other->work->counters;
       memset(&exact->work->counters, 0, sizeof a);
-      trb_dynamics_loads(exact, NULL);
+      trb_dynamics_loads(exact, NULL, NULL);
       a = exact->work->counters;
       CHECK(memcmp(&a, &b, sizeof a) == 0);
       trb_dynamics_free(other);

@@ -1,6 +1,8 @@
 /* Prescribed motion: Hermite curves, their rates, the exact turn of the shaft, the ring's pose. */
 #include "motion/ring_motion.h"
 
+#include "body/ring.h"
+
 #include <stdlib.h>
 
 #include "check.h"

@@ -180,7 +180,7 @@ static double gap_at(trb_dynamics *d, int j, const double *y)
   double least = INFINITY;
   for (int f = 0; f < d->n_fast; f++) {
     trb_load load;
-    if (d->fast[f].pair->kind->surfaces(d->model, j) == 0) continue;
+    if (d->fast[f].surfaces[j] == 0) continue;
     const trb_gaps gaps = trb_fast_touch(d, f, j, y, &load, NULL, NULL);
     least = fmin(least, fmin(gaps.of[TRB_GAP_FLANK], gaps.of[TRB_GAP_ENDS]));
   }

@@ -1,9 +1,8 @@
 /* Bounds of gaps between rollers and their pockets: as long as one says so nothing touches, wherever bodies have moved since it was found, and no
  * gap changes by more than the bound. */
-#include "motion/bound.h"
+#include "motion/fast_pairs.h"
 
 #include "check.h"
-#include "motion/dynamics.h"
 #include "rig.h"
 
 enum { MOST = 512 };
@@ -17,7 +16,7 @@ static trb_gaps gaps_at(trb_dynamics *d, int roller, const double *y, int *touch
   trb_counters counters = {0};
   trb_dynamics_pose_hub(d, y);
   trb_dynamics_pose_roller(d, roller, y + trb_state_roller(d->system, roller));
-  const trb_instant at = trb_dynamics_instant(d);
+  const trb_instant at = trb_dynamics_instant(d, NULL, 0);
   const trb_gaps    gaps = trb_contact_pocket_of(d->model, &d->system->pairs[TRB_PAIR_pocket], &at, roller, &counters, &load, NULL, NULL);
   *touches = trb_norm(load.on_b.force) > 0.0 || counters.pocket_nodes > 0;
   *heights = counters.pocket_culled == counters.pocket_tests;

@@ -120,7 +120,7 @@ static void test_common_turn(int guidance)
     common = i == 1 ? 37.0 : 0.0;
     turn_state(d[i], turning);
     trb_rhs(d[i], NULL, 0.01, turning, rates[i]);
-    trb_dynamics_loads(d[i], NULL);
+    trb_dynamics_loads(d[i], NULL, NULL);
   }
   double       scale = 0.0;
   const double hub = trb_norm(d[0]->hub.on[TRB_BODY_CAGE].force);

@@ -60,7 +60,7 @@ static void test_forces(void)
   trb_detail_clear(both->model, detail);
   for (int i = 0; i < 2; i++) {
     trb_dynamics_pose(d[i], 0.0, y);
-    trb_dynamics_loads(d[i], i == 0 ? NULL : detail);
+    trb_dynamics_loads(d[i], NULL, i == 0 ? NULL : detail);
   }
   double carried = 0.0;
   for (int j = 0; j < 12; j++) {

@@ -21,7 +21,7 @@ AREAS: dict[str, tuple[float, list[str]]] = {
     "records": (0.10, ["csrc/motion/record.c", "csrc/motion/shown.c", "csrc/motion/audit.c", "csrc/motion/peak*.c"]),
     "motion": (
         0.13,
-        ["csrc/bearing/*.[ch]", "csrc/motion/[de]*.c", "csrc/motion/bound.[ch]", "csrc/motion/ring_motion.c"],
+        ["csrc/bearing/*.[ch]", "csrc/motion/[def]*.c", "csrc/motion/r[hi]*.c", "csrc/motion/bound.[ch]"],
     ),
     "stepping": (0.15, ["csrc/stepping/*.c"]),
     "results": (
