@@ -18,12 +18,6 @@ class MissingExtra(TrbError):
 
 
 def need_nicegui() -> None:
-    """Check that the page can be made.
-
-    Raises
-    ------
-    MissingExtra
-        If NiceGUI is not installed.
-    """
+    """Check that the page can be made."""
     if find_spec("nicegui") is None:
         raise MissingExtra("the page needs NiceGUI, which is not installed: pip install 'trbdyn[app]'")

@@ -35,33 +35,16 @@ EXAMPLE: Final = Scene(BEARINGS["30310"](), speed_rpm=3000.0, axial_load=4930.0)
 
 @dataclass
 class Design:
-    """What was typed and chosen.
+    """What was typed and chosen."""
 
-    Attributes
-    ----------
-    source : str
-        Name of a shipped bearing, ``page`` of a catalogue, or ``case``.
-    typed : dict of str to str
-        Texts by the paths of `Field`.
-    case : dict or None
-        The tables of a case that was opened.
-    pair : bool
-        Whether two of the bearings stand on a shaft.
-    units : dict of str to str
-        Chosen units by those of SI.
-    wants : list of str
-        What the user wants to know, names of `trbdyn.app.questions.QUESTIONS`.
-    planned : bool
-        Whether effects, accuracy and length are found by `trbdyn.plan`.
-    """
-
-    source: str = "30310"
-    typed: dict[str, str] = field(default_factory=lambda: dict(FIRST))
-    case: dict[str, Any] | None = None
-    pair: bool = False
-    units: dict[str, str] = field(default_factory=dict)
+    source: str = "30310"  # name of a shipped bearing, ``page`` of a catalogue, or ``case``
+    typed: dict[str, str] = field(default_factory=lambda: dict(FIRST))  # texts by the paths of `Field`
+    case: dict[str, Any] | None = None  # the tables of a case that was opened
+    pair: bool = False  # whether two of the bearings stand on a shaft
+    units: dict[str, str] = field(default_factory=dict)  # chosen units by those of SI
     wants: list[str] = field(default_factory=lambda: ["torque"])
-    planned: bool = False
+    """What the user wants to know, names of `trbdyn.app.questions.QUESTIONS`."""
+    planned: bool = False  # whether effects, accuracy and length are found by `trbdyn.plan`
 
     def to_json(self) -> str:
         return json.dumps(asdict(self))
@@ -103,33 +86,16 @@ class Design:
 
 @dataclass
 class Built:
-    """What a design means.
+    """What a design means."""
 
-    Attributes
-    ----------
-    bearing : Bearing or None
-        The bearing with all changes; None where it cannot be made.
-    base : Bearing or None
-        The bearing before the changes: what is estimated of it, and which fields it has.
-    subject : Scene, Assembly or None
-        What is run.
-    options : RunOptions
-        How it is run.
-    tables : dict
-        The case.
-    problems : dict of str to str
-        What is wrong, by the path of the field; '' where no field has it.
-    values : dict of str to value
-        What was typed, in SI units.
-    """
-
-    bearing: Bearing | None = None
-    base: Bearing | None = None
-    subject: Subject | None = None
-    options: RunOptions = field(default_factory=RunOptions)
-    tables: dict[str, Any] = field(default_factory=dict)
+    bearing: Bearing | None = None  # the bearing with all changes; None where it cannot be made
+    base: Bearing | None = None  # the bearing before the changes: what is estimated of it, and which fields it has
+    subject: Subject | None = None  # what is run
+    options: RunOptions = field(default_factory=RunOptions)  # how it is run
+    tables: dict[str, Any] = field(default_factory=dict)  # the case
     problems: dict[str, str] = field(default_factory=dict)
-    values: dict[str, Any] = field(default_factory=dict)
+    """What is wrong, by the path of the field; '' where no field has it."""
+    values: dict[str, Any] = field(default_factory=dict)  # what was typed, in SI units
 
     def note(self, error: Exception, place: Callable[[str], str] = lambda path: path) -> None:
         """Keep what an error says at the fields that it names."""

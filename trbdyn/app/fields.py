@@ -62,36 +62,18 @@ SCENE: Final = ("speed_rpm", "axial_load", "radial_load", "radial_direction_deg"
 
 @dataclass(frozen=True)
 class Field:
-    """A field of the page.
+    """A field of the page."""
 
-    Attributes
-    ----------
-    path : str
-        Its place in the tables of a case; ``page.`` and ``pair.`` begin those of a catalogue page and of a pair on a shaft.
-    words : str
-        Its name on the page.
-    unit : str
-        Unit in SI, empty where it has none.
-    choices : tuple of str
-        What may be chosen; ``('on', 'off')`` of a switch; empty: it is typed.
-    whole : bool
-        Whether it is a whole number.
-    text : bool
-        Whether it is a text.
-    default : object
-        Its value where nothing is typed; None: there is none.
-    meaning : str
-        A sentence.
-    """
-
-    path: str
-    words: str
-    unit: str = ""
-    choices: tuple[str, ...] = ()
-    whole: bool = False
-    text: bool = False
-    default: Any = None
-    meaning: str = ""
+    path: (
+        str  # in the tables of a case; ``page.`` and ``pair.`` begin those of a catalogue page and of a pair on a shaft
+    )
+    words: str  # its name on the page
+    unit: str = ""  # unit in SI, empty where it has none
+    choices: tuple[str, ...] = ()  # what may be chosen; ``('on', 'off')`` of a switch; empty: it is typed
+    whole: bool = False  # whether it is a whole number
+    text: bool = False  # whether it is a text
+    default: Any = None  # its value where nothing is typed; None: there is none
+    meaning: str = ""  # a sentence
 
     def value(self, typed: str) -> Any:
         """What stands in the tables for a choice or a text."""
@@ -147,16 +129,8 @@ def pocket_fields(shape: str) -> list[Field]:
 
 
 def fields_of(model: Any, prefix: str, only: tuple[str, ...] | None = None) -> Iterator[Field]:
-    """Fields of a model and of the models in it: numbers, choices and switches, with the values that they have.
-
-    Parameters
-    ----------
-    model : Model
-        An input model.
-    prefix : str
-        What their paths begin with.
-    only : tuple of str, optional
-        Names of the fields that are wanted; all by default.
+    """Fields of a model and of the models in it, or only some of them: numbers, choices and switches, with the values that they
+    have. The prefix is what their paths begin with.
     """
     for path, _, si, meaning in field_rows(model):
         *parts, name = path.split(".")

@@ -180,13 +180,7 @@ def show_effects(page: Page) -> None:
 
 
 def open_case(content: bytes) -> dict[str, Any]:
-    """The tables of a case file, checked.
-
-    Raises
-    ------
-    InputError, ValueError
-        If it is no case.
-    """
+    """The tables of a case file, checked: an `InputError` or a `ValueError` if it is none."""
     try:
         tables = tomllib.loads(content.decode("utf-8"))
         subject_from_dict(tables)

@@ -35,17 +35,7 @@ ENTER: Final = b"<!doctype html><meta http-equiv='refresh' content='0;url=/'><ti
 
 
 class Guard:
-    """Refuses what does not come from the page itself.
-
-    Parameters
-    ----------
-    app : ASGI application
-        What answers the requests that pass.
-    port : int
-        Port of the server.
-    token : str, optional
-        The secret; drawn by default.
-    """
+    """Lets an ASGI application on a port answer only what comes from the page itself. The token is drawn where none is given."""
 
     def __init__(self, app: Asgi, port: int, token: str = "") -> None:
         self._app = app

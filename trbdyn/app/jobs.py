@@ -23,21 +23,7 @@ DESIGN: Final = "design.json"
 
 
 class Job:
-    """A task under way.
-
-    Attributes
-    ----------
-    share : float or None
-        How much of it is done, from 0 to 1; None: not known.
-    text : str
-        What it does, or how it ended.
-    state : {'running', 'done', 'stopped', 'failed'}
-        Whether and how it ended.
-    problems : dict of str to str
-        What was wrong with its input, by field.
-    answer : dict
-        What it gave.
-    """
+    """A task under way."""
 
     def __init__(self, kind: str, folder: Path, arguments: dict[str, Any]) -> None:
         context = get_context("spawn")
@@ -103,56 +89,26 @@ class Job:
 
 @dataclass
 class Kept:
-    """What a task has made, in a folder of its own.
+    """What a task has made, in a folder of its own."""
 
-    Attributes
-    ----------
-    name : str
-        Name of the folder.
-    title : str
-        What it is, for the page.
-    kind : str
-        'run', 'sweep' or 'compare'.
-    about : dict
-        What the page shows of it.
-    """
-
-    name: str
-    title: str
-    kind: str
-    about: dict[str, Any]
+    name: str  # name of the folder
+    title: str  # what it is, for the page
+    kind: str  # 'run', 'sweep' or 'compare'
+    about: dict[str, Any]  # what the page shows of it
 
 
 @dataclass
 class Bench:
-    """Everything that the page shows: the design, the task under way, what was made. All tabs of a browser show the same one.
+    """Everything that the page shows: the design, the task under way, what was made. All tabs of a browser show the same one."""
 
-    Attributes
-    ----------
-    root : Path
-        The folder that keeps it.
-    design : Design
-        What was typed.
-    job : Job or None
-        The last task.
-    version : int
-        Rises whenever something has changed.
-    """
-
-    root: Path
-    design: Design = field(default_factory=Design)
-    job: Job | None = None
-    version: int = 0
+    root: Path  # the folder that keeps it
+    design: Design = field(default_factory=Design)  # what was typed
+    job: Job | None = None  # the last task
+    version: int = 0  # rises whenever something has changed
 
     @classmethod
     def open(cls, root: Path) -> Bench:
-        """The bench that a folder keeps.
-
-        Raises
-        ------
-        FileError
-            If the folder cannot be used.
-        """
+        """The bench that a folder keeps."""
         try:
             (root / "runs").mkdir(parents=True, exist_ok=True)
         except OSError as error:

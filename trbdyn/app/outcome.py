@@ -277,13 +277,7 @@ def show_sweep(page: Page) -> None:
 
 
 def swept(page: Page, path: str, text: str) -> tuple[list[str], list[dict[str, Any]]]:
-    """The cases of a sweep: the design with each of some values.
-
-    Raises
-    ------
-    ValueError
-        If a value cannot be used; the message says which.
-    """
+    """The cases of a sweep: the design with each of some values. A `ValueError` says which of them cannot be used."""
     labels = [part.strip() for part in text.split(",") if part.strip()]
     if not labels or len(labels) > MOST_VALUES or len(set(labels)) != len(labels):
         raise ValueError(f"must be 1 to {MOST_VALUES} different values with commas between")

@@ -39,20 +39,7 @@ TABS: Final = {
 
 
 class Page:
-    """One tab of the browser.
-
-    Parameters
-    ----------
-    bench : Bench
-        What all tabs show.
-
-    Attributes
-    ----------
-    built : Built
-        What the design means now.
-    widgets : dict of str to element
-        Widgets by the paths of their fields.
-    """
+    """One tab of the browser."""
 
     run_button: Any
     stop_button: Any

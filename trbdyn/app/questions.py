@@ -6,24 +6,12 @@ from typing import Final, NamedTuple
 
 
 class Question(NamedTuple):
-    """Something that a user wants to know.
+    """Something that a user wants to know."""
 
-    Attributes
-    ----------
-    words : str
-        It on the page.
-    want : dict of str to float
-        Averages that decide it, with the relative errors that are good enough, for `trbdyn.plan`.
-    pictures : tuple of str
-        Names of the pictures that show it.
-    tables : tuple of str
-        What is computed besides: 'rating', 'stiffness'.
-    """
-
-    words: str
-    want: dict[str, float]
-    pictures: tuple[str, ...] = ()
-    tables: tuple[str, ...] = ()
+    words: str  # how the page says it
+    want: dict[str, float]  # averages that decide it, with the relative errors that are good enough, for `trbdyn.plan`
+    pictures: tuple[str, ...] = ()  # names of the pictures that show it
+    tables: tuple[str, ...] = ()  # what is computed besides: 'rating', 'stiffness'
 
 
 QUESTIONS: Final[dict[str, Question]] = {

@@ -45,22 +45,7 @@ def application(bench: Bench) -> FastAPI:
 
 
 def serve(folder: Path, *, port: int = 0, browser: bool = True) -> None:
-    """Serve the page until Ctrl-C.
-
-    Parameters
-    ----------
-    folder : Path
-        Keeps the design and all runs; made if it is missing.
-    port : int
-        Port on this machine; 0: any that is free.
-    browser : bool
-        Open the page in the browser.
-
-    Raises
-    ------
-    FileError
-        If the folder or the port cannot be used.
-    """
+    """Serve the page until Ctrl-C, on a port of this machine (0: any that is free); the folder keeps the design and all runs."""
     bench = Bench.open(folder)
     listener = socket.socket()
     listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

@@ -43,21 +43,9 @@ def usual(si: str, chosen: dict[str, str]) -> str:
 
 
 def read(text: str, si: str, unit: str) -> float:
-    """A number in SI units out of what was typed, for instance ``40`` or ``1.5 inch``.
+    """A number in SI units out of what was typed, for instance ``40`` or ``1.5 inch``; in `unit` where none is typed.
 
-    Parameters
-    ----------
-    text : str
-        What was typed.
-    si : str
-        Unit in SI, as a key of `UNITS`; another one has no other ways to write it.
-    unit : str
-        Unit where none is typed.
-
-    Raises
-    ------
-    ValueError
-        If it is no number, or has an unknown unit; the message says what is allowed.
+    A `ValueError` says what is allowed.
     """
     sizes = UNITS.get(si, {si: "1"})
     found = _NUMBER.fullmatch(text)

@@ -31,18 +31,7 @@ __all__ = ["BAD_INPUT", "DONE", "FAILED", "FAULT", "INTERRUPTED", "main", "make_
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line.
-
-    Parameters
-    ----------
-    arguments : sequence of str, optional
-        Words after the program's name; those of the process by default.
-
-    Returns
-    -------
-    int
-        Exit code.
-    """
+    """Run the command line with the words after the program's name, by default those of the process; gives the exit code."""
     let_any_name_be_printed()
     options = make_parser().parse_args(arguments)
     return run_command(options.command, options)

@@ -10,13 +10,7 @@ from pathlib import Path
 
 
 def command(*words: object) -> str:
-    """A command of trbdyn for the shell that called this one: ``.venv/bin/python -m trbdyn resume run.h5``.
-
-    Parameters
-    ----------
-    *words
-        The words behind the program's name.
-    """
+    """A command of trbdyn for the shell that called this one: ``.venv/bin/python -m trbdyn resume run.h5``."""
     return shlex.join([*program(), *map(str, words)])
 
 

@@ -24,15 +24,7 @@ def let_any_name_be_printed() -> None:
 
 
 def run_command(command: Callable[[argparse.Namespace], int], options: argparse.Namespace) -> int:
-    """Run a command; what it raises becomes a line on stderr and an exit code.
-
-    Parameters
-    ----------
-    command : callable
-        Takes the options and gives an exit code.
-    options : argparse.Namespace
-        With ``debug``: whether to show where an error arose.
-    """
+    """Run a command; what it raises becomes a line on stderr and an exit code."""
     try:
         return command(options)
     except (InputError, LoadError, FileError) as error:

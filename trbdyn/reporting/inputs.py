@@ -17,27 +17,15 @@ LONGEST_LIST = 6
 
 @dataclass(frozen=True)
 class Row:
-    """One input.
+    """One input."""
 
-    Attributes
-    ----------
-    path : str
-        Full name, for instance ``bearing.roller.diameter``.
-    value : str
-        The value, as text.
-    unit : str
-        Its unit; empty for pure numbers, choices and texts.
-    text : str
-        What it is.
-    mark : {'', 'assumed', 'estimated'}
-        Assumed: no source gives it, and it is the default of the package. Estimated: from the catalogue's numbers.
-    """
-
-    path: str
-    value: str
-    unit: str
-    text: str
+    path: str  # full name, for instance ``bearing.roller.diameter``
+    value: str  # the value, as text
+    unit: str  # its unit; empty for pure numbers, choices and texts
+    text: str  # what it is
     mark: str
+    """Assumed: no source gives it, and it is the default of the package. Estimated: from the catalogue's
+    numbers."""
 
 
 def rows(scene: Scene) -> list[Row]:

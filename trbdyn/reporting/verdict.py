@@ -61,28 +61,14 @@ Sentence = tuple[str, str, str]
 def verdict(result: Result, numbers: dict[str, Any]) -> list[Sentence]:
     """Sentences on life, cage, hits, torque, films, pressure, energy and exactness; those that the recorded groups allow.
 
-    Parameters
-    ----------
-    result : Result
-        The run.
-    numbers : dict
-        Its summary; with the lives of the run's records where the summary has none, as speed or loads change.
+    The numbers are those of the summary, with the lives of the run's records where it has none, as speed or loads change.
     """
     parts = (_end, _life, _static, _pressure, _films, _torque, _whirl, _hits, _energy, _exactness)
     return [sentence for part in parts if (sentence := part(result, numbers)) is not None]
 
 
 def what_matters(result: Result, numbers: dict[str, Any]) -> list[str]:
-    """Three sentences: how the cage moves, how hard it is hit, what torque it costs; those that the recorded groups
-    allow.
-
-    Parameters
-    ----------
-    result : Result
-        The run.
-    numbers : dict
-        Its summary.
-    """
+    """Three sentences: how the cage moves, how hard it is hit, what torque it costs; those that the recorded groups allow."""
     found = (part(result, numbers) for part in (_whirl, _hits, _torque))
     return [f"{sentence[1]}. {sentence[2]}" for sentence in found if sentence is not None]
 

@@ -81,21 +81,8 @@ def reference_viscosity(speed_rpm: float, pitch_diameter: float) -> float:
 def contamination_factor(cleanliness: str, *, filtered: bool, viscosity_ratio: float, pitch_diameter: float) -> float:
     """e_C = a (1 - c2/Dpw^(1/3)) with a = c1 kappa^0.68 Dpw^0.55, at most 1, Dpw in mm: ISO 281:2007, annex A.
 
-    Parameters
-    ----------
-    cleanliness : {'13/10', '15/12', '17/14', '19/16', '21/18'}
-        Particles in the oil by ISO 4406; the last one only without a filter.
-    filtered : bool
-        Circulating oil with an in-line filter; else oil bath, or circulating oil with a filter off line.
-    viscosity_ratio : float
-        kappa (1).
-    pitch_diameter : float
-        Dpw (m).
-
-    Raises
-    ------
-    InputError
-        If there are no constants for this cleanliness.
+    Cleanliness is a code of ISO 4406, the last one only without a filter; filtered: circulating oil with an in-line filter,
+    else oil bath, or circulating oil with a filter off line.
     """
     constants = _FILTERED if filtered else _UNFILTERED
     if cleanliness not in constants:
@@ -113,21 +100,9 @@ def fatigue_limit(C0: float, pitch_diameter: float) -> float:
 
 
 def life_factor(viscosity_ratio: float, load_ratio: float) -> float:
-    """a_ISO of radial roller bearings.
+    """a_ISO of radial roller bearings by kappa, from 0.1 (above 4 it counts as 4), and by the load ratio e_C Cu/P.
 
     a_ISO = 0.1 [1 - (1.5859 - c/kappa^p)(e_C Cu/P)^0.4]^-9.185, at most 50: ISO 281:2007, 9.3.3.4, equations 34 to 36.
-
-    Parameters
-    ----------
-    viscosity_ratio : float
-        kappa (1), from 0.1; above 4 it counts as 4.
-    load_ratio : float
-        e_C Cu/P (1).
-
-    Raises
-    ------
-    InputError
-        If kappa is below 0.1, where the standard has no value.
 
     Examples
     --------
@@ -153,13 +128,7 @@ def life_factor(viscosity_ratio: float, load_ratio: float) -> float:
 
 
 def reliability_factor(reliability: float) -> float:
-    """a1 for a reliability (%).
-
-    Raises
-    ------
-    InputError
-        If the standard's table has no value for it.
-    """
+    """a1 for a reliability (%), one of those of the standard's table."""
     if reliability not in RELIABILITY:
         allowed = ", ".join(f"{known:g}" for known in RELIABILITY)
         raise InputError.of("reliability", reliability, f"must be one of {allowed} (%)")

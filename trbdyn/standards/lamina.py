@@ -64,24 +64,9 @@ def stress_concentration(count: int) -> Array:
 
 
 def in_laminas(per_length: Array, stations: Array, load: Array, length: float, line: float) -> Array:
-    """Loads of the laminas (N) from loads per length (N/m) at stations along the line.
-
-    Parameters
-    ----------
-    per_length : ndarray, shape (..., n)
-        Load per length at the stations (N/m).
-    stations : ndarray, shape (n,)
-        Places along the line from its middle (m), ascending.
-    load : ndarray, shape (...)
-        Load of the whole contact (N), which the laminas together keep.
-    length : float
-        Effective length (m).
-    line : float
-        Length that may touch (m).
-
-    Returns
-    -------
-    ndarray, shape (..., LAMINAS)
+    """Loads of the laminas (N), shape (..., LAMINAS), from loads per length (N/m), shape (..., n), at stations along the line
+    (m, from its middle, ascending). The laminas together keep the load of the contact (N); beyond the line that may touch (m)
+    they have none.
     """
     places = length * ((np.arange(LAMINAS) + 0.5) / LAMINAS - 0.5)
     flat = np.array([np.interp(places, stations, row) for row in per_length.reshape(-1, stations.size)])
@@ -93,18 +78,10 @@ def in_laminas(per_length: Array, stations: Array, load: Array, length: float, l
 
 @dataclass(frozen=True)
 class LaminaLoads:
-    """Loads that count for the laminas of all rollers together.
+    """Loads that count for the laminas of all rollers together."""
 
-    Attributes
-    ----------
-    over_rating : ndarray, shape (2, n_s)
-        q_ee/q_ce and q_ei/q_ci, at the outer and at the inner ring (1).
-    ratings : ndarray, shape (2,)
-        q_ce and q_ci (N).
-    """
-
-    over_rating: Array
-    ratings: Array
+    over_rating: Array  # q_ee/q_ce and q_ei/q_ci, at the outer and at the inner ring (1), shape (2, n_s)
+    ratings: Array  # q_ce and q_ci (N), shape (2,)
 
     @classmethod
     def of(
@@ -118,18 +95,9 @@ class LaminaLoads:
     ) -> LaminaLoads:
         """The means over all places of the rollers.
 
-        Parameters
-        ----------
-        loads : ndarray, shape (2, P, n_s)
-            Loads of the laminas at the outer and the inner ring (N), for P places of a roller: all rollers of all records.
-        ratings : ndarray, shape (2,)
-            See `contact_ratings`.
-        weights : ndarray, shape (P,), optional
-            Share of the revolutions that each place stands for; equal by default.
-        turning : tuple of bool
-            Whether the outer, and whether the inner ring turns against the load.
-        edges : bool
-            Whether `stress_concentration` counts.
+        The loads at the outer and the inner ring (N), shape (2, P, n_s), are those of P places of a roller, which stand for
+        shares of the revolutions (`weights`, equal by default). `turning` says whether outer and inner ring turn against the
+        load, `edges` whether `stress_concentration` counts.
         """
         count = loads.shape[2]
         concentration = stress_concentration(count) if edges else np.ones(count)

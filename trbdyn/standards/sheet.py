@@ -7,7 +7,8 @@ bearing's rollers, and said. Reference lives stand on the loads of laminas, of a
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, fields, replace
+from inspect import cleandoc
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -72,42 +73,9 @@ class RatingRow:
 RATED_AS_RADIAL: Final = 1e-3
 """Axial over radial load of a cylindrical bearing up to which nothing is said of it: a ring that leans makes as much."""
 
-_ROWS: Final[dict[str, tuple[str, str, str]]] = {
-    "axial_load": ("axial load", "Fa", "N"),
-    "radial_load": ("radial load", "Fr", "N"),
-    "speed_rpm": ("speed", "n", "rpm"),
-    "dynamic_rating": ("basic dynamic load rating", "C", "N"),
-    "static_rating": ("basic static load rating", "C0", "N"),
-    "fatigue_limit": ("fatigue load limit", "Cu", "N"),
-    "e": ("largest Fa/Fr at which P = Fr", "e", ""),
-    "Y": ("axial factor of P", "Y", ""),
-    "Y0": ("axial factor of P0", "Y0", ""),
-    "equivalent_load": ("equivalent dynamic load", "P", "N"),
-    "load_ratio": ("rating over equivalent load", "C/P", ""),
-    "smallest_load": ("smallest load, so that rollers roll", "Pmin", "N"),
-    "life": ("basic rating life", "L10", "million revolutions"),
-    "life_hours": ("basic rating life", "L10h", "h"),
-    "static_equivalent_load": ("equivalent static load", "P0", "N"),
-    "static_safety": ("static safety", "S0", ""),
-    "pressure_safety": ("static safety by the largest pressure of a roller", "(4 GPa/p)^2", ""),
-    "viscosity": ("viscosity of the oil", "nu", "mm2/s"),
-    "reference_viscosity": ("viscosity that the bearing asks for", "nu1", "mm2/s"),
-    "viscosity_ratio": ("viscosity ratio", "kappa", ""),
-    "contamination_factor": ("contamination factor", "e_C", ""),
-    "life_factor": ("life modification factor", "a_ISO", ""),
-    "reliability_factor": ("factor of reliability", "a1", ""),
-    "modified_life": ("modified rating life", "Lnm", "million revolutions"),
-    "modified_life_hours": ("modified rating life", "Lnmh", "h"),
-    "reference_life": ("basic reference rating life", "L10r", "million revolutions"),
-    "reference_life_hours": ("basic reference rating life", "L10rh", "h"),
-    "reference_load": ("equivalent load of the reference life", "Pref", "N"),
-    "modified_reference_life": ("modified reference rating life", "Lnmr", "million revolutions"),
-    "modified_reference_life_hours": ("modified reference rating life", "Lnmrh", "h"),
-    "speed_over_reference": ("speed over the catalogue's reference speed", "n/n_ref", ""),
-    "speed_over_limit": ("speed over the catalogue's limiting speed", "n/n_lim", ""),
-    "speed_parameter": ("speed times pitch diameter", "n Dpw", "mm/min"),
-}
-"""Words, symbol and unit of each number, in the order of the sheet."""
+
+def _number(words: str, symbol: str, unit: str = "") -> dict[str, str]:
+    return {"words": words, "symbol": symbol, "unit": unit}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -135,38 +103,6 @@ class Rating(Fitted):
 
     Attributes
     ----------
-    axial_load, radial_load : float
-        Fa and Fr (N).
-    speed_rpm : float
-        n, of the inner ring relative to the outer ring (rpm).
-    dynamic_rating, static_rating, fatigue_limit : float
-        C, C0 and Cu (N).
-    e, Y, Y0 : float or None
-        Factors (1).
-    equivalent_load, smallest_load, static_equivalent_load : float
-        P, least load, P0 (N).
-    load_ratio : float or None
-        C/P (1).
-    life, life_hours : float or None
-        L10 (million revolutions, h).
-    static_safety, pressure_safety : float or None
-        C0/P0, and (4 GPa over the largest pressure) squared, the same of the heaviest roller alone (1).
-    viscosity, reference_viscosity : float or None
-        nu and nu1 (mm2/s).
-    viscosity_ratio, contamination_factor, life_factor, reliability_factor : float or None
-        kappa, e_C, a_ISO, a1 (1).
-    modified_life, modified_life_hours : float or None
-        Lnm = a1 a_ISO L10 (million revolutions, h).
-    reference_life, reference_life_hours : float or None
-        L10r of ISO 16281 (million revolutions, h).
-    reference_load : float or None
-        Pref = C/L10r^(3/10) (N).
-    modified_reference_life, modified_reference_life_hours : float or None
-        Lnmr of ISO 16281, with a life factor for each lamina (million revolutions, h).
-    speed_over_reference, speed_over_limit : float or None
-        Speed over those that the catalogue permits (1).
-    speed_parameter : float
-        n Dpw (mm/min).
     warnings : tuple of str
         What an engineer must know: too small a load, speeds beyond the catalogue's, kappa out of range.
     notes : dict of str to str
@@ -175,39 +111,47 @@ class Rating(Fitted):
         How the bearing sits on its shaft and in its housing, where the rating is that of `trbdyn.fit`.
     """
 
-    axial_load: float
-    radial_load: float
-    speed_rpm: float
-    dynamic_rating: float
-    static_rating: float
-    fatigue_limit: float
-    e: float | None
-    Y: float | None
-    Y0: float | None
-    equivalent_load: float
-    load_ratio: float | None
-    smallest_load: float
-    life: float | None
-    life_hours: float | None
-    static_equivalent_load: float
-    static_safety: float | None
-    pressure_safety: float | None
-    viscosity: float
-    reference_viscosity: float | None
-    viscosity_ratio: float | None
-    contamination_factor: float | None
-    life_factor: float | None
-    reliability_factor: float
-    modified_life: float | None
-    modified_life_hours: float | None
-    reference_life: float | None
-    reference_life_hours: float | None
-    reference_load: float | None
-    modified_reference_life: float | None
-    modified_reference_life_hours: float | None
-    speed_over_reference: float | None
-    speed_over_limit: float | None
-    speed_parameter: float
+    axial_load: float = field(metadata=_number("axial load", "Fa", "N"))
+    radial_load: float = field(metadata=_number("radial load", "Fr", "N"))
+    speed_rpm: float = field(metadata=_number("speed", "n", "rpm"))
+    dynamic_rating: float = field(metadata=_number("basic dynamic load rating", "C", "N"))
+    static_rating: float = field(metadata=_number("basic static load rating", "C0", "N"))
+    fatigue_limit: float = field(metadata=_number("fatigue load limit", "Cu", "N"))
+    e: float | None = field(metadata=_number("largest Fa/Fr at which P = Fr", "e"))
+    Y: float | None = field(metadata=_number("axial factor of P", "Y"))
+    Y0: float | None = field(metadata=_number("axial factor of P0", "Y0"))
+    equivalent_load: float = field(metadata=_number("equivalent dynamic load", "P", "N"))
+    load_ratio: float | None = field(metadata=_number("rating over equivalent load", "C/P"))
+    smallest_load: float = field(metadata=_number("smallest load, so that rollers roll", "Pmin", "N"))
+    life: float | None = field(metadata=_number("basic rating life", "L10", "million revolutions"))
+    life_hours: float | None = field(metadata=_number("basic rating life", "L10h", "h"))
+    static_equivalent_load: float = field(metadata=_number("equivalent static load", "P0", "N"))
+    static_safety: float | None = field(metadata=_number("static safety", "S0"))
+    pressure_safety: float | None = field(
+        metadata=_number("static safety by the largest pressure of a roller", "(4 GPa/p)^2")
+    )
+    viscosity: float = field(metadata=_number("viscosity of the oil", "nu", "mm2/s"))
+    reference_viscosity: float | None = field(metadata=_number("viscosity that the bearing asks for", "nu1", "mm2/s"))
+    viscosity_ratio: float | None = field(metadata=_number("viscosity ratio", "kappa"))
+    contamination_factor: float | None = field(metadata=_number("contamination factor", "e_C"))
+    life_factor: float | None = field(metadata=_number("life modification factor", "a_ISO"))
+    reliability_factor: float = field(metadata=_number("factor of reliability", "a1"))
+    modified_life: float | None = field(metadata=_number("modified rating life", "Lnm", "million revolutions"))
+    modified_life_hours: float | None = field(metadata=_number("modified rating life", "Lnmh", "h"))
+    reference_life: float | None = field(metadata=_number("basic reference rating life", "L10r", "million revolutions"))
+    reference_life_hours: float | None = field(metadata=_number("basic reference rating life", "L10rh", "h"))
+    reference_load: float | None = field(metadata=_number("equivalent load of the reference life", "Pref", "N"))
+    modified_reference_life: float | None = field(
+        metadata=_number("modified reference rating life", "Lnmr", "million revolutions")
+    )
+    modified_reference_life_hours: float | None = field(
+        metadata=_number("modified reference rating life", "Lnmrh", "h")
+    )
+    speed_over_reference: float | None = field(
+        metadata=_number("speed over the catalogue's reference speed", "n/n_ref")
+    )
+    speed_over_limit: float | None = field(metadata=_number("speed over the catalogue's limiting speed", "n/n_lim"))
+    speed_parameter: float = field(metadata=_number("speed times pitch diameter", "n Dpw", "mm/min"))
     warnings: tuple[str, ...]
     notes: dict[str, str]
 
@@ -217,15 +161,13 @@ class Rating(Fitted):
         turns = 60e-6 * LONGEST_LIFE * self.speed_rpm
         return tuple(
             RatingRow(
-                name,
-                words,
-                symbol,
-                getattr(self, name),
-                unit,
-                self.notes.get(name, ""),
-                turns if unit == "million revolutions" and turns > 0.0 else math.inf,
+                name=one.name,
+                value=getattr(self, one.name),
+                note=self.notes.get(one.name, ""),
+                longest=turns if one.metadata["unit"] == "million revolutions" and turns > 0.0 else math.inf,
+                **one.metadata,
             )
-            for name, (words, symbol, unit) in _ROWS.items()
+            for one in NUMBERS
         )
 
     def to_dict(self) -> dict[str, Any]:
@@ -244,8 +186,18 @@ class Rating(Fitted):
         )
 
 
+NUMBERS: Final = tuple(one for one in fields(Rating) if one.metadata)
+"""The numbers of a sheet in their order, with words, symbol and unit."""
+_TEXTS = (
+    f"{one.name} : {one.type}\n    {one.metadata['symbol']}, {one.metadata['words']} ({one.metadata['unit'] or 1}).\n"
+    for one in NUMBERS
+)
+Rating.__doc__ = cleandoc(Rating.__doc__ or "").replace("-\n", f"-\n{''.join(_TEXTS)}", 1)
+
 LONGEST_LIFE: Final = 1e6
 """Life (h) beyond which no number is shown: 114 years, and no standard was tested there."""
+LIVES: Final = ("life_hours", "modified_life_hours", "reference_life_hours", "modified_reference_life_hours")
+"""The lives of a sheet in hours."""
 WHICH_LIFE: Final = (
     "Which life to use: Lnmrh where there is one: it counts how the load spreads along and between the rollers, the oil's film "
     "and its dirt; Lnmh to compare with a maker's modified life; L10h to compare catalogues; L10rh to see what misalignment, "
@@ -266,32 +218,17 @@ def _digits(value: float | None) -> str:
 
 @dataclass(frozen=True)
 class Loading:
-    """What a sheet stands on.
+    """What a sheet stands on."""
 
-    Attributes
-    ----------
-    axial_load, radial_load, speed_rpm : float
-        Means (N, N, rpm); the speed is that of the inner ring relative to the outer ring, on which lives and films depend.
-    lamina_loads : ndarray, shape (2, P, n_s)
-        Loads of the laminas at the outer and the inner ring (N), see `lamina.reference_life`.
-    weights : ndarray, shape (P,), or None
-        Share of the revolutions of each.
-    largest_pressure : float
-        Largest pressure on a raceway (Pa).
-    source : str
-        Of what: in words.
-    moments : tuple of tuple of float
-        Axial and radial loads (N) at moments of a run whose loads change: the heaviest of them makes the static safety.
-    """
-
-    axial_load: float
-    radial_load: float
-    speed_rpm: float
-    lamina_loads: Array
-    weights: Array | None
-    largest_pressure: float
-    source: str
+    axial_load: float  # mean (N)
+    radial_load: float  # mean (N)
+    speed_rpm: float  # mean of the inner ring against the outer ring, on which lives and films depend (rpm)
+    lamina_loads: Array  # at the outer and the inner ring (N), see `lamina.reference_life`, shape (2, P, n_s)
+    weights: Array | None  # share of the revolutions of each, shape (P,)
+    largest_pressure: float  # largest pressure on a raceway (Pa)
+    source: str  # of what: in words
     moments: tuple[tuple[float, float], ...] = ()
+    """Axial and radial loads (N) at moments of a run whose loads change: the heaviest makes the static safety."""
 
 
 def lamina_loads(scene: Scene, contacts: dict[str, Array]) -> Array:
@@ -310,13 +247,7 @@ def ring_loads(scene: Scene, loads: Array, angles: Array) -> tuple[float, float]
 
 
 def at_equilibrium(scene: Scene) -> Loading:
-    """Loads of the equilibrium at the scene's start.
-
-    Raises
-    ------
-    LoadError
-        If the bearing cannot carry the load.
-    """
+    """Loads of the equilibrium at the scene's start."""
     start = scene.start.time
     still = scene.replace(start=scene.start.replace(kind="equal")) if scene.start.kind != "state" else scene
     contacts = contacts_at_start(still)

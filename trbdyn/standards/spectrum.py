@@ -24,6 +24,7 @@ from trbdyn.errors import InputError
 from trbdyn.model.scene import Scene
 from trbdyn.standards import iso281, lamina
 from trbdyn.standards.sheet import (
+    LIVES,
     WHICH_LIFE,
     Loading,
     Rating,
@@ -77,11 +78,10 @@ class SpectrumRating(Tabled):
     warnings: tuple[str, ...]
 
     def _shown(self) -> Shown:
-        lives = ("life_hours", "modified_life_hours", "reference_life_hours", "modified_reference_life_hours")
         head = ("case", "time %", "n rpm", "Fa N", "Fr N", "P N", "damage %", "L10h h", "Lnmh h", "L10rh h", "Lnmrh h")
 
         def row(name: str, one: Rating | SpectrumRating, *parts: str) -> tuple[str, ...]:
-            return (name, *parts, *(life_text(getattr(one, life)) for life in lives))
+            return (name, *parts, *(life_text(getattr(one, life)) for life in LIVES))
 
         rows = [
             row(
@@ -106,21 +106,10 @@ class SpectrumRating(Tabled):
 def over_cases(
     names: Sequence[str], shares: Sequence[float], loadings: Sequence[tuple[Scene, Loading]], **options: Any
 ) -> SpectrumRating:
-    """Lives of one bearing over cases.
+    """Lives of one bearing over cases with shares of the time, whose sum is 1, from its scene and loading in each; options of
+    `trbdyn.rating`.
 
-    Parameters
-    ----------
-    names, shares : sequence of str, of float
-        Of the cases; the shares of the time have the sum 1.
-    loadings : sequence of tuple
-        Scene and loading of the bearing in each case.
-    **options
-        Of `trbdyn.rating`.
-
-    Raises
-    ------
-    InputError
-        If the bearing is not the same in all cases, or its rings do not turn against the load in the same way.
+    It must be the same bearing in all cases, and its rings must turn against the load in the same way.
     """
     bearing = loadings[0][0].bearing
     for name, (scene, _) in zip(names, loadings, strict=True):

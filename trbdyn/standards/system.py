@@ -8,13 +8,12 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from trbdyn.base.shown import Shown
-from trbdyn.standards.sheet import WHICH_LIFE, Fitted, Loading, Rating, at_equilibrium, life_text, sheet
+from trbdyn.standards.sheet import LIVES, WHICH_LIFE, Fitted, Loading, Rating, at_equilibrium, life_text, sheet
 from trbdyn.standards.spectrum import SpectrumRating
 from trbdyn.statics.assembly import BearingOnShaft, ShaftEquilibrium
 
 WEIBULL_SLOPE: Final = 9.0 / 8.0
 """Slope of the distribution of lives of roller bearings: ISO/TR 1281-1:2008."""
-_LIVES: Final = ("life_hours", "modified_life_hours", "reference_life_hours", "modified_reference_life_hours")
 
 
 @dataclass(frozen=True)
@@ -41,7 +40,7 @@ class SystemRating(Fitted):
 
     def _shown(self) -> Shown:
         def row(name: str, one: Rating | SpectrumRating | SystemRating, *loads: str) -> tuple[str, ...]:
-            lives = [getattr(one, life) for life in _LIVES]
+            lives = [getattr(one, life) for life in LIVES]
             return (name, *(loads or ("", "", "")), *map(life_text, lives))
 
         head = ("bearing", "Fa N", "Fr N", "P N", "L10h h", "Lnmh h", "L10rh h", "Lnmrh h")
@@ -63,15 +62,8 @@ class SystemRating(Fitted):
 
 
 def system_life(lives: Sequence[float | None]) -> float | None:
-    """Life that all of some bearings reach with the same reliability: (sum L^-e)^(-1/e), e = 9/8.
+    """Life that all of some bearings reach with the same reliability: (sum L^-e)^(-1/e), e = 9/8; None: infinite.
 
-    Parameters
-    ----------
-    lives : sequence of float or None
-        Their lives, in one unit; None: infinite.
-
-    Notes
-    -----
     Reliabilities multiply, and each is exp(-(L/L_c)^e): Weibull's distribution, ISO/TR 1281-1:2008.
 
     Examples
@@ -91,16 +83,13 @@ def system_sheet(found: ShaftEquilibrium, **options: Any) -> SystemRating:
 
 def system_of(sheets: Mapping[str, Rating | SpectrumRating]) -> SystemRating:
     """The sheets of all bearings of a shaft, and the lives of the whole."""
-    unknown = {life: any(_lacks(one, life) for one in sheets.values()) for life in _LIVES}
-    lives: dict[str, Any] = {
-        life: None if unknown[life] else system_life([getattr(one, life) for one in sheets.values()]) for life in _LIVES
-    }
+    lives: dict[str, Any] = {}
+    for life in LIVES:
+        found = [getattr(one, life) for one in sheets.values()]
+        # a life that cannot be told, though the bearing is loaded and turns
+        lacks = any(own is None and one.life_hours is not None for own, one in zip(found, sheets.values(), strict=True))
+        lives[life] = None if lacks else system_life(found)
     return SystemRating(bearings=sheets, **lives)
-
-
-def _lacks(one: Rating | SpectrumRating, life: str) -> bool:
-    """Whether a life cannot be told, though the bearing is loaded and turns."""
-    return getattr(one, life) is None and one.life_hours is not None
 
 
 def loading_of(one: BearingOnShaft) -> Loading:

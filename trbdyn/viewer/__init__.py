@@ -216,13 +216,7 @@ def _on_shaft(
 
 
 def frames_that_fit(result: Result, max_size_mb: float, n_faces: int, n_stations: int) -> int:
-    """Number of frames that a file of a size has room for, before compression.
-
-    Raises
-    ------
-    InputError
-        If not even two frames fit.
-    """
+    """Number of frames that a file of a size has room for, before compression."""
     count, slots = result.scene.bearing.n_rollers, len(result.scene.bearing.slot_names)
     a_frame = 4 * (14 + 6 * count) + 2 * count * (15 + slots + n_stations)
     meshes = 32 * (130 * 50 + 300 * count) + 400 * n_faces

@@ -31,79 +31,36 @@ NEEDED: Final = ("cage", "rollers")
 
 @dataclass(frozen=True)
 class Quantity:
-    """Something that can be coloured, and plotted for a roller or a pocket face.
-
-    Attributes
-    ----------
-    name : str
-        Key.
-    label : str
-        Words.
-    unit : str
-        Unit of the values as shown.
-    values : ndarray, shape (n, Z), (n, Z, slots) or (n, Z, stations)
-        Values by frame.
-    kind : {'roller', 'pocket', 'station'}
-        What the second and third axis are.
-    note : str
-        What a value is between two frames.
-    """
+    """Something that can be coloured, and plotted for a roller or a pocket face."""
 
     name: str
-    label: str
-    unit: str
-    values: Array
-    kind: str = "roller"
-    note: str = "at the moment shown"
+    label: str  # words
+    unit: str  # of the values as shown
+    values: Array  # by frame, shape (n, Z), (n, Z, slots) or (n, Z, stations)
+    kind: str = "roller"  # what the second and third axis are: 'roller', 'pocket' or 'station'
+    note: str = "at the moment shown"  # what a value is between two frames
 
 
 @dataclass(frozen=True)
 class Frames:
-    """A thinned record.
+    """A thinned record."""
 
-    Attributes
-    ----------
-    index : ndarray of int, shape (n,)
-        Records that were taken.
-    total : int
-        Records that the shown part of the run has.
-    time, turns : ndarray, shape (n,)
-        Time (s) and turns of the shaft.
-    pose : dict of str to ndarray
-        Scalars, shape (n,): shaft, cage_angle (rad), cage_x, cage_y, cage_z (m), cage_tilt_x, cage_tilt_y (rad),
-        ring_x, ring_y, ring_z (m), ring_tilt_x, ring_tilt_y (rad), cup_x and so on of the outer ring; of the
-        rollers, shape (n, Z): psi (rad, against
-        their place in an even spacing that turns with the cage), r, z (m, against nominal), skew, tilt, spin (rad).
-    quantities : tuple of Quantity
-        What can be coloured and plotted.
-    """
-
-    index: NDArray[np.int64]
-    total: int
-    time: Array
-    turns: Array
+    index: NDArray[np.int64]  # records that were taken, shape (n,)
+    total: int  # records that the shown part of the run has
+    time: Array  # (s), shape (n,)
+    turns: Array  # of the shaft, shape (n,)
     pose: dict[str, Array]
-    quantities: tuple[Quantity, ...] = field(default=())
+    """Scalars, shape (n,): shaft, cage_angle (rad), cage_x, cage_y, cage_z (m), cage_tilt_x, cage_tilt_y (rad),
+    ring_x, ring_y, ring_z (m), ring_tilt_x, ring_tilt_y (rad), cup_x and so on of the outer ring; of the rollers,
+    shape (n, Z): psi (rad, against their place in an even spacing that turns with the cage), r, z (m, against
+    nominal), skew, tilt, spin (rad)."""
+    quantities: tuple[Quantity, ...] = field(default=())  # what can be coloured and plotted
 
 
 def frames(result: Result, *, revolutions: float | None, max_frames: int, along: bool = True) -> Frames:
-    """Take frames from a result.
-
-    Parameters
-    ----------
-    result : Result
-        Needs the groups time, cage and rollers; forces, films and slip are there if contacts and pocket were recorded.
-    revolutions : float, optional
-        Number of last turns of the shaft to take; None takes the whole run.
-    max_frames : int
-        Most frames to take, evenly spread.
-    along : bool
-        Evaluate the pressure along the rollers at every frame.
-
-    Raises
-    ------
-    InputError
-        If a group is missing, there are fewer than two records, or an argument is not allowed.
+    """At most so many frames, evenly spread over the last turns of the shaft (all of them for None), with the pressure along
+    the rollers if `along`. It needs the groups of `NEEDED`; forces, films and slip are there if contacts and pocket were
+    recorded.
     """
     from trbdyn.plot.cage import last_turns
 
@@ -122,13 +79,7 @@ def frames(result: Result, *, revolutions: float | None, max_frames: int, along:
 
 
 def check(result: Result, revolutions: float | None, max_frames: int) -> None:
-    """Refuse what cannot be shown.
-
-    Raises
-    ------
-    InputError
-        See `frames`.
-    """
+    """Refuse what cannot be shown."""
     for group in NEEDED:
         if group not in result.groups:
             raise InputError.of(
@@ -227,14 +178,8 @@ def _quantities(result: Result, index: NDArray[np.int64], pose: dict[str, Array]
 
 
 def largest_between(values: Array, index: NDArray[np.int64]) -> Array:
-    """The largest of each value since the frame before, shape (n, ...); at the first frame the value itself.
-
-    Parameters
-    ----------
-    values : ndarray, shape (T, ...)
-        Records.
-    index : ndarray of int, shape (n,)
-        Increasing records of the frames.
+    """The largest of each value since the frame before, shape (n, ...), in records of shape (T, ...); at the first frame the
+    value itself.
     """
     starts = np.concatenate([index[:1], index[:-1] + 1])
     parts = values[: index[-1] + 1]

@@ -34,23 +34,10 @@ def largest_factor(bearing: Bearing, shapes: Shapes, pose: Mapping[str, Array]) 
 
 
 def factor_within(cup: Array, cage: Mesh, pose: Mapping[str, Array], largest: float) -> float:
-    """Largest factor at which the drawn cage stays within the cup.
+    """Largest factor, not above a largest one, at which the drawn cage stays within the cup; at least 1, as true to scale is
+    allowed.
 
-    Parameters
-    ----------
-    cup : ndarray, shape (2, 2)
-        Radius and height of the ends of the cup's raceway (m).
-    cage : Mesh
-        Body of the cage in its own frame.
-    pose : dict of str to ndarray
-        The cage's place and tilt by frame, as `Frames.pose` has them.
-    largest : float
-        Factor that is not to be exceeded.
-
-    Returns
-    -------
-    float
-        At least 1: true to scale is always allowed.
+    The cup is given by radius and height of the ends of its raceway (m), shape (2, 2), the pose as in `Frames.pose`.
     """
     points, shift = _outside(cage)
     moves = np.column_stack([pose[f"cage_{name}"] for name in ("x", "y", "z", "tilt_x", "tilt_y")])

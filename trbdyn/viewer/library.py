@@ -15,13 +15,7 @@ PACKAGE = "jupyter_threejs_sage"
 
 @cache
 def three_js() -> str:
-    """The text of three.js with its orbit controls, a classic script that defines ``THREE``.
-
-    Raises
-    ------
-    FileError
-        If it is not installed.
-    """
+    """The text of three.js with its orbit controls, a classic script that defines ``THREE``."""
     for folder in _folders():
         versions = {
             int(match[1]): path

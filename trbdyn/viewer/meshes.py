@@ -16,22 +16,13 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Mesh:
-    """Triangles.
+    """Triangles."""
 
-    Attributes
-    ----------
-    position, normal : ndarray, shape (n, 3)
-        Vertices (m) and unit normals.
-    index : ndarray of int, shape (m, 3)
-        Triangles, counter-clockwise seen from outside.
-    shift : ndarray, shape (n, 3), optional
-        How far each vertex moves for each unit of the factor of exaggeration beyond one (m).
-    """
-
-    position: Array
-    normal: Array
-    index: NDArray[np.int64]
+    position: Array  # vertices (m), shape (n, 3)
+    normal: Array  # unit normals there, shape (n, 3)
+    index: NDArray[np.int64]  # triangles, counter-clockwise seen from outside, shape (m, 3)
     shift: Array | None = None
+    """How far each vertex moves for each unit of the factor of exaggeration beyond one (m), shape (n, 3)."""
 
     def exaggerated(self, factor: float) -> Array:
         """Vertices for a factor of exaggeration, shape (n, 3)."""
@@ -41,18 +32,8 @@ class Mesh:
 def revolve(
     profile: ArrayLike, *, facets: int, start: float = 0.0, stop: float = 2.0 * np.pi, caps: bool = False
 ) -> Mesh:
-    """A closed outline turned about the z axis.
-
-    Parameters
-    ----------
-    profile : array_like, shape (k, 2)
-        Corners (r, z) of a closed outline.
-    facets : int
-        Facets around.
-    start, stop : float
-        Sector (rad).
-    caps : bool
-        Close the two ends of the sector.
+    """A closed outline of corners (r, z), shape (k, 2), turned about the z axis from `start` to `stop` (rad) in flat facets;
+    `caps` close the two ends of a sector.
     """
     corners = np.asarray(profile, dtype=float)
     r, z = corners.T

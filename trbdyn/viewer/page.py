@@ -59,30 +59,14 @@ class _Block:
 
 @dataclass(frozen=True)
 class Shown:
-    """A bearing that a page shows.
+    """A bearing that a page shows."""
 
-    Attributes
-    ----------
-    result : Result
-        The run.
-    shapes : Shapes
-        Meshes of its bearing.
-    frames : Frames
-        Frames of it.
-    name : str
-        Its name on the shaft; empty where it is alone.
-    place : float
-        Where its roller-centre plane stands along the axis, from the middle of the picture (m).
-    turned : bool
-        Whether it is turned about the x axis, so that its own axis points the other way.
-    """
-
-    result: Result
-    shapes: Shapes
-    frames: Frames
-    name: str = ""
-    place: float = 0.0
-    turned: bool = False
+    result: Result  # the run
+    shapes: Shapes  # meshes of its bearing
+    frames: Frames  # frames of it
+    name: str = ""  # its name on the shaft; empty where it is alone
+    place: float = 0.0  # where its roller-centre plane stands along the axis, from the middle of the picture (m)
+    turned: bool = False  # whether it is turned about the x axis, so that its own axis points the other way
 
 
 def page(
@@ -92,18 +76,10 @@ def page(
     title: str = "",
     shaft: Mapping[str, float] | None = None,
 ) -> str:
-    """The HTML of the view.
+    """The HTML of the view of a bearing, or of the bearings on a shaft, all with frames of the same times.
 
-    Parameters
-    ----------
-    shown : sequence of Shown
-        A bearing, or the bearings on a shaft, all with frames of the same times.
-    factor : float, optional
-        Factor of exaggeration at the start.
-    title : str
-        Title of the page.
-    shaft : mapping of str to float, optional
-        Ends of the shaft, ``from`` and ``to``, along the first bearing's own axis from its roller-centre plane (m).
+    The factor is that of exaggeration at the start; the shaft goes ``from`` and ``to`` places along the first bearing's own
+    axis, from its roller-centre plane (m).
     """
     block = _Block()
     first = shown[0]

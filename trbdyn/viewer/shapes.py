@@ -32,79 +32,37 @@ CUT = (np.radians(-60.0), np.radians(70.0))
 
 @dataclass(frozen=True)
 class FaceMesh:
-    """A face of a pocket: its mesh in the cage's frame, where it is, and where it points.
-
-    Attributes
-    ----------
-    pocket, slot : int
-        Pocket and column of its forces.
-    name : str
-        Name of the face.
-    mesh : Mesh
-        Its polygon.
-    centre, normal, shift : ndarray, shape (3,)
-        Middle, unit normal towards the roller, shift for each unit of exaggeration.
-    """
+    """A face of a pocket: its mesh in the cage's frame, where it is, and where it points."""
 
     pocket: int
-    slot: int
+    slot: int  # column of its forces
     name: str
-    mesh: Mesh
-    centre: Array
-    normal: Array
-    shift: Array
+    mesh: Mesh  # its polygon
+    centre: Array  # its middle (m), shape (3,)
+    normal: Array  # unit normal towards the roller, shape (3,)
+    shift: Array  # for each unit of exaggeration (m), shape (3,)
 
 
 @dataclass(frozen=True)
 class Shapes:
-    """Every part of a bearing as meshes.
+    """Every part of a bearing as meshes."""
 
-    Attributes
-    ----------
-    outer, inner : Mesh
-        Cup and cone.
-    roller : Mesh
-        A roller about its centre of mass, axis along z.
-    mark : Mesh
-        A mark on the roller's large end, which shows its spin.
-    cage : Mesh
-        Body of the cage, in the cage's frame.
-    faces : tuple of FaceMesh
-        Faces of all pockets.
-    roller_rows : int
-        Rings of vertices of the roller's flank: the first rows of its mesh, AROUND + 1 vertices each.
-    largest_factor : float
-        Factor of exaggeration at which the bars of the cage become too thin to draw.
-    land, guide : Mesh, optional
-        Land of the ring that guides the cage, and the cage's guiding surface on it.
-    land_turns : bool
-        Whether the land belongs to the inner ring.
-    """
-
-    outer: Mesh
-    inner: Mesh
-    roller: Mesh
-    mark: Mesh
-    cage: Mesh
-    faces: tuple[FaceMesh, ...]
-    roller_rows: int
-    largest_factor: float
-    land: Mesh | None = None
-    guide: Mesh | None = None
-    land_turns: bool = False
+    outer: Mesh  # the cup
+    inner: Mesh  # the cone
+    roller: Mesh  # a roller about its centre of mass, axis along z
+    mark: Mesh  # a mark on the roller's large end, which shows its spin
+    cage: Mesh  # body of the cage, in the cage's frame
+    faces: tuple[FaceMesh, ...]  # faces of all pockets
+    roller_rows: int  # rings of vertices of the roller's flank: the first rows of its mesh, AROUND + 1 vertices each
+    largest_factor: float  # factor of exaggeration at which the bars of the cage become too thin to draw
+    land: Mesh | None = None  # land of the ring that guides the cage
+    guide: Mesh | None = None  # the cage's guiding surface on it
+    land_turns: bool = False  # whether the land belongs to the inner ring
 
 
 def shapes(bearing: Bearing, stations: ArrayLike, guidance: str = "rollers") -> Shapes:
-    """Meshes of a bearing.
-
-    Parameters
-    ----------
-    bearing : Bearing
-        The bearing.
-    stations : array_like, shape (n,)
-        Places along the roller's flank, from mid length towards the large end, at which it has rings of vertices (m).
-    guidance : {'rollers', 'inner_land', 'outer_land'}
-        What guides the cage: a land is drawn where one does.
+    """Meshes of a bearing. Its rollers have rings of vertices at places along their flank from mid length towards the large end
+    (m); a land is drawn where `guidance` is 'inner_land' or 'outer_land'.
     """
     flank = np.asarray(stations, dtype=float)
     faces = _faces(bearing)
