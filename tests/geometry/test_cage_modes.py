@@ -7,6 +7,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_limits
 
 import trbdyn as trb
 from trbdyn.cage.cage_solid import CageSolid, cage_solid, pocket_axes
@@ -35,6 +36,16 @@ def test_the_elements_weigh_what_the_cage_does(built: CageSolid) -> None:
     assert heavy[0, 0] == pytest.approx(BEARING.cage.mass, rel=6e-3)
     assert heavy[5, 5] == pytest.approx(BEARING.cage.inertia_axial, rel=6e-3)
     assert heavy[1, 3] / heavy[0, 0] == pytest.approx(-BEARING.cage.offset, abs=2e-5)
+
+
+def test_bits_do_not_depend_on_the_threads_of_the_machine(built: CageSolid) -> None:
+    """A run that a checkpoint continues elsewhere has the same modes."""
+    found = []
+    for threads in (1, 2):
+        with threadpool_limits(limits=threads, user_api="blas"):
+            found.append(built.solid.natural(20))
+    for one, other in zip(*found, strict=True):
+        assert np.array_equal(one, other)
 
 
 def test_faces_follow_rigid_motions(built: CageSolid) -> None:

@@ -7,6 +7,9 @@ come from anywhere. Displacements are quadratic: 20 nodes in a hexahedron, 10 in
 
 from __future__ import annotations
 
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final
@@ -31,6 +34,19 @@ REPEATS: Final = 50
 """Most repetitions of a static solution."""
 PRECISE: Final = 1e-7
 """Forces that a static solution may leave, over the largest load."""
+
+_ALONE: Final = threading.RLock()
+
+
+@contextmanager
+def _one_thread() -> Iterator[None]:
+    """Linear algebra by one thread: with several, the last bits of the results depend on how many the machine gives. The limit
+    holds for the whole process, so that one solution is found at a time.
+    """
+    from threadpoolctl import threadpool_limits
+
+    with _ALONE, threadpool_limits(limits=1, user_api="blas"):
+        yield
 
 
 @dataclass(frozen=True)
@@ -110,6 +126,7 @@ class Solid:
         """Three displacements along x, y, z and three rotations about them through the origin, shape (3 N, 6)."""
         return np.concatenate([np.hstack([np.eye(3), -crossed(node)]) for node in self.nodes])
 
+    @_one_thread()
     def natural(self, count: int) -> tuple[FloatArray, FloatArray]:
         """Natural frequencies (Hz), shape (count,), and mode shapes with unit modal mass, shape (3 N, count), of the free solid,
         without its six rigid motions. Modes of equal frequency, as a ring has them, are the ones that `told_apart` chooses,
@@ -147,6 +164,7 @@ class Solid:
         whole = csc_array(self.stiffness + self._shift * self.mass)
         return splu(whole, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
+    @_one_thread()
     def static(self, loads: FloatArray) -> FloatArray:
         """Displacements of the free solid under loads, which accelerate it as a rigid body and bend it; the part of the
         displacement that is a rigid motion (orthogonal in mass) is left out.
