@@ -16,6 +16,7 @@ from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from trbdyn.errors import InputError
 
@@ -43,8 +44,6 @@ def _one_thread() -> Iterator[None]:
     """Linear algebra by one thread: with several, the last bits of the results depend on how many the machine gives. The limit
     holds for the whole process, so that one solution is found at a time.
     """
-    from threadpoolctl import threadpool_limits
-
     with _ALONE, threadpool_limits(limits=1, user_api="blas"):
         yield
 
