@@ -14,6 +14,7 @@ import pytest
 import trbdyn as trb
 from trbdyn.cli import main
 from trbdyn.errors import InputError, StepError
+from trbdyn.model.lubricants import REPLENISHMENT
 from trbdyn.run import memory, running
 from trbdyn.run.case_text import case_text
 from trbdyn.run.checkpoint import checkpoint_path
@@ -259,6 +260,18 @@ def test_uncertainty(name: str) -> None:
         assert np.ptp(others[1:]) < 0.01 * np.ptp(films[1:])
         assert found["torque"].value == pytest.approx(found["left_torque"].value + found["right_torque"].value)
     assert all(band.low < band.high for band in trb.study.open_inputs(SUBJECTS[name]))
+
+
+def test_open_inputs_are_inputs_of_the_subject(name: str) -> None:
+    """Also that of the film's replenishment, whose path was that of no bearing of a pair."""
+    on = {"replenishment": next(one.value for one in REPLENISHMENT.values() if one.value > 0.0), "oil_fill": 0.2}
+    changes = {f"{prefix}effects.{key}": value for prefix in SUBJECTS[name].parts for key, value in on.items()}
+    base = Base.of(Base.of(SUBJECTS[name]).build(changes)[0])
+    subject, _ = base.build({})
+    bands = trb.study.open_inputs(subject)
+    assert sum(band.path.endswith(tuple(on)) for band in bands) == len(changes)
+    for band in bands:
+        assert base.build({band.path: band.high})[0] != subject, band.path
 
 
 def test_torque_map(name: str, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,35 +10,55 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 import os
 import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, ClassVar, Final, Literal
 
 import numpy as np
+from pydantic import AfterValidator, ConfigDict, FiniteFloat, TypeAdapter
 
 from trbdyn.errors import FileError
 
 INDEX = "index.jsonl"
 
 
+def _name_of_file(text: str) -> str:
+    if text and Path(text).name != text:
+        raise ValueError("must be a name without folders")
+    return text
+
+
+def _observable(value: Any) -> Any:
+    """A number, a text, or an array of numbers that are lists in lists of equal lengths."""
+    if value is None or isinstance(value, str | float):
+        return value
+    if np.array(value).dtype.kind not in "bif":
+        raise ValueError("must be a number, a text or an array of numbers")
+    return value
+
+
 @dataclass(frozen=True)
 class Entry:
     """How one case ended: a line of the index."""
+
+    __pydantic_config__: ClassVar = ConfigDict(strict=True, extra="forbid")
 
     name: str
     fingerprint: str  # of scene and run options
     status: Literal["done", "failed"]
     message: str  # how it ended, in a sentence
     parameters: dict[str, Any] = field(default_factory=dict)  # what told it from the other cases
-    file: str = ""  # its result file in the folder; empty if there is none
-    values: dict[str, Any] = field(default_factory=dict)  # observables
-    wall_s: float = 0.0  # wall time (s)
+    file: Annotated[str, AfterValidator(_name_of_file)] = ""  # its result file in the folder; empty if there is none
+    values: dict[str, Annotated[Any, AfterValidator(_observable)]] = field(default_factory=dict)  # observables
+    wall_s: FiniteFloat = 0.0  # wall time (s)
     finished: str = ""  # when, UTC
     version: str = ""  # of trbdyn
+
+
+_ENTRY: Final = TypeAdapter(Entry)
 
 
 class Index:
@@ -110,38 +130,10 @@ def _entry_in(line: bytes) -> Entry | None:
         values = json.loads(line)
         if values.pop("checksum") != _checksum(values):
             return None
-        entry = Entry(**values)
+        return _ENTRY.validate_json(json.dumps(values))
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
         return None
-    return entry if _is_sound(entry) else None
 
 
 def _checksum(values: Mapping[str, Any]) -> str:
     return hashlib.sha256(json.dumps(values).encode()).hexdigest()[:16]
-
-
-def _is_sound(entry: Entry) -> bool:
-    """Whether every value of a line is of its kind."""
-    texts = (entry.name, entry.fingerprint, entry.message, entry.file, entry.finished, entry.version)
-    wall = entry.wall_s
-    return (
-        all(isinstance(text, str) for text in texts)
-        and entry.status in ("done", "failed")
-        and isinstance(entry.parameters, dict)
-        and isinstance(entry.values, dict)
-        and all(_is_observable(value) for value in entry.values.values())
-        and isinstance(wall, int | float)
-        and not isinstance(wall, bool)
-        and abs(wall) < math.inf
-        and (not entry.file or Path(entry.file).name == entry.file)
-    )
-
-
-def _is_observable(value: object) -> bool:
-    """Whether a value is a number, a text, or an array of numbers that are lists in lists of equal lengths."""
-    if value is None or isinstance(value, str | bool | int | float):
-        return not isinstance(value, int) or abs(value) < 2**63
-    try:
-        return isinstance(value, list) and np.array(value, dtype=float).size >= 0
-    except (ValueError, TypeError, OverflowError):
-        return False

@@ -198,46 +198,28 @@ def _open_inputs(prefix: str, part: Scene | ShaftBearing) -> list[Band]:
         for entry in part.bearing.estimated
         if entry.low < entry.high
     ]
+
+    def add(path: str, low: float, high: float, source: str) -> None:
+        found.append(Band(path=f"{prefix}{path}", low=low, high=high, source=source))
+
     if effects.films and oil.oil is not None:
         t = oil.temperature_c
-        found.append(
-            Band(
-                path=f"{prefix}lubricant.temperature_c",
-                low=t - 3.0,
-                high=t + 3.0,
-                source="thermocouple at the ring: assumed",
-            )
-        )
+        add("lubricant.temperature_c", t - 3.0, t + 3.0, "thermocouple at the ring: assumed")
     if effects.films:
-        found += [
-            Band(
-                path=f"{prefix}bearing.roughness.{name}",
-                low=0.7 * value,
-                high=1.5 * value,
-                source="finishing and running in: assumed",
-            )
-            for name, value in (("raceway", rough.raceway), ("rib", rough.rib))
-        ]
+        for name, value in (("raceway", rough.raceway), ("rib", rough.rib)):
+            add(f"bearing.roughness.{name}", 0.7 * value, 1.5 * value, "finishing and running in: assumed")
     if effects.lubrication in ("mixed", "boundary"):
         limit = effects.friction.boundary_limit
-        found.append(
-            Band(
-                path=f"{prefix}effects.friction.boundary_limit",
-                low=0.7 * limit,
-                high=2.0 * limit,
-                source="0.07 to 0.2, published",
-            )
-        )
+        add("effects.friction.boundary_limit", 0.7 * limit, 2.0 * limit, "0.07 to 0.2, published")
     for state in REPLENISHMENT.values():
         if effects.films and effects.rolling_resistance and effects.replenishment == state.value > 0.0:
-            source = f"{state.words}: assumed"
-            found.append(Band(path="effects.replenishment", low=state.low, high=state.high, source=source))
+            add("effects.replenishment", state.low, state.high, f"{state.words}: assumed")
             break
     if effects.oil_fill > 0.0:
         supply = supply_of(effects.oil_fill)
         low, high = (0.0, min(2.0 * effects.oil_fill, 1.0)) if supply is None else (supply.low, supply.high)
-        source = "known in no bearing: assumed" if supply is None else f"{supply.words}: assumed"
-        found.append(Band(path=f"{prefix}effects.oil_fill", low=low, high=high, source=source))
+        words = "known in no bearing" if supply is None else supply.words
+        add("effects.oil_fill", low, high, f"{words}: assumed")
     return found
 
 
