@@ -172,7 +172,11 @@ def test_splits_by_hand() -> None:
     assert observables.power_split(TIME[:1], {"loss_rib": np.array([5.0])}, {"power_rib": np.array([7.0])}) == {
         "rib": 7.0
     }
-    torques = {"inner_torque_rib": np.array([1.0, 2.0, 6.0]), "inner_torque_rolling": np.array([-1.0, 0.0, -2.0])}
+    torques = {
+        "inner_torque": np.array([9.0]),
+        "inner_torque_rib": np.array([1.0, 2.0, 6.0]),
+        "inner_torque_rolling": np.array([-1.0, 0.0, -2.0]),
+    }
     assert observables.torque_split(torques) == {"rib": 3.0, "rolling": -1.0}
 
 
@@ -238,6 +242,7 @@ def test_cage_by_hand() -> None:
     np.testing.assert_array_equal(observables.axis_distance(position), [5.0, 2.0])
     np.testing.assert_array_equal(observables.locus(position, 0.5), [[6.0, 8.0], [0.0, -4.0]])
     assert observables.cage_speed_ratio([1.0, 5.0], [2.0, 12.0]) == 0.4
+    assert math.isnan(observables.cage_speed_ratio([1.0, 5.0], [2.0, 2.0]))
     assert observables.cage_frequency([0.0, 2.0], [1.0, 1.0 + 8.0 * math.pi]) == pytest.approx(2.0)
     turn = np.linspace(0.0, 3.0, 301)
     circle = np.stack([np.cos(-4.0 * math.pi * turn) + 5.0, np.sin(-4.0 * math.pi * turn) - 1.0, 0.0 * turn], axis=1)
@@ -259,7 +264,10 @@ def test_derived_by_hand(whirling: Result) -> None:
     np.testing.assert_allclose(whirling.axis_distance_over_cpr, 0.9)
     np.testing.assert_allclose(whirling.roller_slip, 1e-3, atol=1e-12)
     np.testing.assert_allclose(whirling.spin_slip, 0.0, atol=1e-12)
+    assert whirling.torque_by_loss["rolling"] == pytest.approx(220.0 / (2 * np.pi * 50.0))
     assert whirling.clearances.circumferential == 0.12e-3
+    with pytest.raises(trb.InputError, match="plane"):
+        whirling.cage_locus("side")  # type: ignore[arg-type]
     assert whirling.n_rollers == 12
     part = whirling.window(0.1, 0.2)
     assert (part.time[0], part.time[-1], len(part)) == (pytest.approx(0.1), pytest.approx(0.2), 1001)

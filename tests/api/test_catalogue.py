@@ -303,22 +303,6 @@ def test_they_run(name: str) -> None:
     assert trb.Scene.from_json(scene.to_json()) == scene
 
 
-def test_bands_hold_what_is_known_of_real_bearings() -> None:
-    """The inner geometry of the 32216 that ships with the package is published; the catalogue's e belongs to another
-    maker.
-    """
-    real = trb.cases.bearing_32216()
-    found = {entry.path: entry for entry in trb.Bearing.from_catalogue(**page("32216")).estimated}
-    known = {
-        "pitch_diameter": real.pitch_diameter,
-        "roller.diameter": real.roller.diameter,
-        "n_rollers": real.n_rollers,
-        "roller.effective_length": real.roller.effective_length,
-    }
-    for path, value in known.items():
-        assert found[path].low <= value <= found[path].high, path
-
-
 def test_what_is_known_is_taken_and_not_estimated() -> None:
     known = {
         "n_rollers": 12,
@@ -385,12 +369,6 @@ def test_estimates_are_marked_until_they_are_changed() -> None:
 def test_bad_pages_are_refused(change: dict[str, Any], match: str) -> None:
     with pytest.raises(trb.InputError, match=match):
         trb.Bearing.from_catalogue(**page("30310", **change))
-
-
-def test_a_maker_whose_rating_is_above_the_standard_is_said() -> None:
-    bearing = trb.Bearing.from_catalogue(**page("30310", C=190e3))
-    assert 190e3 / rating(bearing) > 1.2
-    assert any(f"{190e3 / rating(bearing):.3f} times" in entry.source for entry in bearing.estimated)
 
 
 @pytest.mark.slow

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn import FileError, History, InputError, Result, Simulation, StepError
+from trbdyn import History, InputError, Result, Simulation, StepError
 from trbdyn.model.cases import paper_30310
 from trbdyn.results import fields as field_table
 from trbdyn.results import peaks as peak_table
@@ -162,54 +162,21 @@ def test_file_holds_what_memory_does(short: Result, tmp_path: Path) -> None:
         assert result.scene == paper_30310(3000.0, 4930.0)
 
 
-def test_file_that_cannot_be_written(tmp_path: Path) -> None:
-    with pytest.raises(FileError):
-        simulate().run(duration=1e-3, output=tmp_path / "missing" / "run.h5")
-
-
-def test_callback_ends_the_run(tmp_path: Path) -> None:
-    seen: list[float] = []
-
-    def callback(sim: Simulation) -> bool:
-        seen.append(sim.time)
-        return len(seen) == 2
-
-    path = tmp_path / "run.h5"
-    result = simulate().run(duration=10.0, save_every=1e-5, output=path, callback=callback)
-    assert not result.success
-    assert "callback" in result.message
-    assert len(seen) == 2
-    assert seen[0] < seen[1] < 10.0
-    assert 256 < len(trb.load(path)) < 2000
-
-
-def test_what_a_callback_raises_brings_the_records_with_it() -> None:
+@pytest.mark.parametrize("in_file", [False, True])
+def test_what_a_callback_raises_comes_out_with_the_records(tmp_path: Path, in_file: bool) -> None:
     def callback(sim: trb.Simulation) -> None:
         if sim.time > 1e-3:
             raise ValueError("enough")
 
     sim = trb.Simulation(trb.cases.paper_30310(3000.0))
     with pytest.raises(ValueError, match="enough") as caught:
-        sim.run(duration=1.0, save_every=1e-5, callback=callback)
-    result = caught.value.result
+        sim.run(duration=1.0, save_every=1e-5, output=tmp_path / "run.h5" if in_file else None, callback=callback)
+    assert "'result'" in caught.value.__notes__[0]
+    result = trb.load(tmp_path / "run.h5") if in_file else caught.value.result
     assert not result.success
     assert "ended by ValueError" in result.message
     assert len(result) > 100
     assert result.time[-1] == pytest.approx(1e-5 * (len(result) - 1))
-    assert "'result'" in caught.value.__notes__[0]
-
-
-def test_what_a_callback_raises_comes_out(tmp_path: Path) -> None:
-    def callback(_: Simulation) -> None:
-        raise RuntimeError("enough")
-
-    path = tmp_path / "run.h5"
-    with pytest.raises(RuntimeError, match="enough"):
-        simulate().run(duration=10.0, save_every=1e-5, output=path, callback=callback)
-    result = trb.load(path)
-    assert not result.success
-    assert "RuntimeError" in result.message
-    assert len(result) >= 256
 
 
 @pytest.mark.parametrize("in_file", [False, True])
@@ -306,32 +273,21 @@ def test_failed_single_step() -> None:
     assert sim.step() > 0.0
 
 
-def run_into_each_other(**arguments: Any) -> StepError:
-    """Rollers without a cage, one faster than the others."""
+@pytest.mark.parametrize("in_file", [False, True])
+def test_rollers_that_touch_end_the_run(tmp_path: Path, in_file: bool) -> None:
+    """Without a cage nothing keeps rollers apart: a run in which they meet, one faster than the others, is no result."""
     effects = trb.Effects.frictionless().replace(bodies="rollers", gravity=False)
     sim = Simulation(paper_30310(3000.0, 4930.0, effects=effects))
     vector = sim.state.vector
     sim.view(vector)["roller_v_t"][3] += 4.0
     sim.set_state(vector)
     with pytest.raises(StepError, match="touch") as caught:
-        sim.run(duration=0.02, save_every=1e-4, **arguments)
-    return caught.value
-
-
-def test_rollers_that_touch_end_the_run(tmp_path: Path) -> None:
-    """Without a cage nothing keeps rollers apart: a run in which they meet is no result."""
-    error = run_into_each_other(output=tmp_path / "run.h5")
-    assert error.body == "rollers"
-    kept = trb.load(tmp_path / "run.h5")
+        sim.run(duration=0.02, save_every=1e-4, output=tmp_path / "run.h5" if in_file else None)
+    assert caught.value.body == "rollers"
+    kept = trb.load(tmp_path / "run.h5") if in_file else caught.value.result
     assert not kept.success
+    assert "touch" in kept.message
     assert len(kept) > 10
-
-
-def test_rollers_that_touch_leave_what_was_good() -> None:
-    error = run_into_each_other()
-    assert error.result is not None
-    assert len(error.result) > 10
-    assert "touch" in error.result.message
 
 
 def test_run_after_single_steps() -> None:

@@ -21,7 +21,7 @@ import pytest
 
 import trbdyn as trb
 from trbdyn import plot, study
-from trbdyn.errors import FileError, InputError, TrbError
+from trbdyn.errors import FileError, InputError
 from trbdyn.model.cases import paper_30310
 from trbdyn.run.options import RunOptions
 from trbdyn.run.toml_case import case_from_dict, load_case
@@ -342,12 +342,6 @@ def test_the_shortest_runs_have_a_summary(tmp_path: Path, records: int) -> None:
             plot.all(result, tmp_path, ["spectrum"])
 
 
-def test_a_study_of_short_runs_is_done(tmp_path: Path) -> None:
-    made = study.grid(paper_30310(), {"scene.speed_rpm": [1000]}, RunOptions(duration=1e-4))
-    data = study.run(made, tmp_path / "study", executor="serial")
-    assert data.status.values.tolist() == ["done"], data.message.values
-
-
 def test_pictures_need_no_later_matplotlib(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """Matplotlib 3.8 knows no argument of get_figure."""
     from matplotlib.axes import Axes
@@ -436,11 +430,6 @@ def test_builds_with_fast_math_are_refused(tmp_path: Path, flags: str) -> None:
     refused = flags in FLAGS
     assert (done.returncode != 0) is refused, done.stderr
     assert ("allow fast math" in " ".join(done.stderr.split())) is refused
-
-
-def test_every_error_here_is_the_packages_own() -> None:
-    assert issubclass(InputError, TrbError)
-    assert issubclass(FileError, TrbError)
 
 
 def test_a_pipe_that_nobody_writes_to_is_an_empty_case(tmp_path: Path) -> None:

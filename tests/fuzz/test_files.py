@@ -58,21 +58,6 @@ def names(folder: Path) -> list[str]:
 # ---- what lies there already ----
 
 
-def test_an_existing_file_is_replaced_only_if_asked(tmp_path: Path) -> None:
-    path = tmp_path / "run.h5"
-    first = run(path, duration=1e-4)
-    before = path.read_bytes()
-    with pytest.raises(FileError, match=r"run\.h5: the file exists already.*overwrite"):
-        run(path)
-    assert path.read_bytes() == before
-    assert len(run(path, duration=2e-4, overwrite=True)) == 2 * len(first) - 1
-    note = tmp_path / "note.txt"
-    note.write_bytes(FOREIGN)
-    with pytest.raises(FileError, match="exists already"):
-        run(note)
-    assert note.read_bytes() == FOREIGN
-
-
 def test_the_command_line_replaces_only_if_asked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path, summary = tmp_path / "run.h5", tmp_path / "summary.json"
     words = ["run", "rig_30310", "--duration", "1e-4", "--quiet", "-o", str(path), "--summary", str(summary)]

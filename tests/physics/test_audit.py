@@ -148,8 +148,7 @@ def test_losses_are_minus_the_power_of_all_contact_forces(kit: SimpleNamespace) 
         assert put_in - float(growth) == pytest.approx(lost, abs=1e-5 * size)
 
 
-@pytest.mark.parametrize("share", [0.0, 0.1])
-@pytest.mark.parametrize("case", ["standard", "damped", "dry"])
+@pytest.mark.parametrize(("case", "share"), [("standard", 0.0), ("standard", 0.1), ("damped", 0.1), ("dry", 0.1)])
 def test_every_loss_is_a_loss(kit: SimpleNamespace, case: str, share: float) -> None:
     """Sliding friction and damping only ever take energy, tangents or not."""
     result = run(kit, case, 1e-4, rings_share=share)
@@ -192,12 +191,16 @@ def unloaded_within(kit: SimpleNamespace, within: float, effects: Effects) -> Re
     return kit.simulate(effects, scenery={"ring": "follows", "axial_load": load}).run(duration=6e-3)
 
 
-SUDDEN = [*(pytest.param(within, marks=pytest.mark.slow) for within in (1e-5, 1e-6, 1e-8)), 1e-9]
-"""Times in which the load falls and comes back (s)."""
+SUDDEN = [
+    pytest.param(effects, within, marks=pytest.mark.slow)
+    for effects in (PAPER, STANDARD)
+    for within in (1e-5, 1e-6, 1e-8)
+]
+SUDDEN += [pytest.param(PAPER, 1e-9, marks=pytest.mark.slow), pytest.param(STANDARD, 1e-9)]
+"""Effects, and times in which the load falls and comes back (s)."""
 
 
-@pytest.mark.parametrize("within", SUDDEN)
-@pytest.mark.parametrize("effects", [PAPER, STANDARD], ids=["paper", "standard"])
+@pytest.mark.parametrize(("effects", "within"), SUDDEN)
 def test_the_work_of_a_sudden_load_is_in_the_balance(kit: SimpleNamespace, within: float, effects: Effects) -> None:
     """However sudden: no step passes over it."""
     result = unloaded_within(kit, within, effects)

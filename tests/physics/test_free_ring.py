@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import warnings
-from pathlib import Path
 from typing import Any
 
 import matplotlib.pyplot as plt
@@ -296,11 +295,9 @@ def test_every_number_of_the_ring_acts() -> None:
     assert abs(shifted["omega_t"] - plain["omega_t"]) > 1.0
 
 
-def test_pictures_of_a_ring(tmp_path: Path) -> None:
+def test_pictures_of_a_ring() -> None:
     scene = scene_of(ROTOR.replace(unbalance=1e-4), radial_load=800.0)
     result = Simulation(scene, accuracy="fast").run(revolutions=2, save_every=1e-4)
-    written = trb.plot.all(result, tmp_path, only=("ring_orbit", "ring_motion"))
-    assert [path.name for path in written] == ["ring_orbit.png", "ring_motion.png"]
     assert {"ring_orbit", "ring_motion"} <= set(trb.plot.drawable(result))
     ax = trb.plot.ring_spectrum(result, of="acceleration", along="z", orders=10.0)
     assert "acceleration" in ax.figure.get_suptitle()
@@ -312,9 +309,6 @@ def test_pictures_of_a_ring(tmp_path: Path) -> None:
     for given, said in (({"of": "jerk"}, "must be one of"), ({"along": "r"}, "must be 'x', 'y' or 'z'")):
         with pytest.raises(InputError, match=said):
             trb.plot.ring_spectrum(result, **given)
-    report = tmp_path / "report.html"
-    trb.report(result, report, pictures=("ring_orbit", "ring_motion"))
-    assert "Path of the inner ring" in report.read_text(encoding="utf-8")
 
 
 def test_a_spectrum_of_too_few_records_says_that_it_folds() -> None:

@@ -53,7 +53,7 @@ def restitution(mass: float, speed: float, **options: object) -> float:
 @pytest.mark.parametrize("mass", [1e-4, 0.02, 0.2, 2.5])
 def test_no_preset_makes_energy_in_a_hit(mass, preset):
     """What is missing in a fast hit has gone into the rollers: a run at a ten-thousandth of the tolerances misses it, too."""
-    for speed in (3e-4, 1e-3, 3e-3, 1e-2, 1e-1):
+    for speed in (3e-4, 3e-3, 1e-1):
         exact, found = _exact(mass, speed), restitution(mass, speed, accuracy=preset)
         assert exact - LOST[preset] <= found <= 1.01, f"{1e3 * speed:g} mm/s: {found:.3f}, exact {exact:.3f}"
 

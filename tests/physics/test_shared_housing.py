@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -167,22 +166,13 @@ def test_the_place_under_another_load_is_that_of_a_solution_of_our_own() -> None
         assert abs(result[name].energy_closure) < 1e-3
 
 
-def test_the_same_bits_again_from_a_file_and_from_a_state(tmp_path: Path) -> None:
-    sims = [simulation(pair(), checkpoint_every=1e-3) for _ in range(2)]
-    runs = [sim.run(duration=4e-3, save_every=1e-4, output=tmp_path / f"{k}.h5") for k, sim in enumerate(sims)]
-    assert np.array_equal(sims[0].state.vector, sims[1].state.vector)
-    loaded = trb.load(tmp_path / "0.h5")
-    assert loaded.assembly == pair()
-    for name in ("left", "right"):
-        assert np.array_equal(loaded[name]["housing_position"], runs[0][name]["housing_position"])
-        assert loaded[name].scene.housing is not None
-    half = simulation(pair())
-    half.run(duration=2e-3, save_every=1e-4)
-    onward = pair().replace(start=trb.Start.state(half.state))
-    later = [simulation(onward) for _ in range(2)]
-    ends = [sim.run(duration=2e-3, save_every=1e-4) for sim in later]
-    assert np.array_equal(later[0].state.vector, later[1].state.vector)
-    off = ends[0]["right"]["housing_position"][-1] - runs[0]["right"]["housing_position"][-1]
+def test_a_run_goes_on_from_a_state() -> None:
+    """From a checkpoint to the same bits, and files: tests/restart/test_assemblies.py."""
+    half = simulation(pair(), checkpoint_every=1e-3)
+    half.run(duration=1e-3, save_every=1e-4)
+    onward = simulation(pair().replace(start=trb.Start.state(half.state)))
+    end, other = (sim.run(duration=1e-3, save_every=1e-4) for sim in (half, onward))
+    off = end["right"]["housing_position"][-1] - other["right"]["housing_position"][-1]
     assert np.abs(off).max() < 2e-9
 
 
