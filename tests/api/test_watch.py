@@ -12,9 +12,10 @@ import pytest
 
 import trbdyn as trb
 from trbdyn.model.cases import paper_30310
-from trbdyn.run import vibrations
+from trbdyn.run.energies import LEAST_STORED_SHARE
 from trbdyn.run.options import ACCURACY
-from trbdyn.run.watch import LEAST_STORED_SHARE, LOST_SHARE, STOP, WARN, WINDOWS, Watch
+from trbdyn.run.probe import _difference
+from trbdyn.run.watch import LOST_SHARE, STOP, WARN, WINDOWS, Watch
 
 LOOSE: dict[str, Any] = {
     "rtol": 0.1,
@@ -247,7 +248,7 @@ def test_vibrations_that_the_steps_follow_are_no_reason_to_warn():
 def test_a_difference_is_said_beyond_the_scatter_of_runs_that_are_as_good(off, scatter, certain, possible):
     """What lies within the scatter is said only where vibrations grow on, as without damping."""
     fine = 1.0 + off + scatter * np.tile([1.0, -1.0], 4)
-    difference = vibrations._difference(10.0 * fine, np.full(8, 10.0))
+    difference = _difference(10.0 * fine, np.full(8, 10.0))
     assert difference.value == pytest.approx(off)
     assert difference.notable(certain=True) == certain
     assert difference.notable(certain=False) == possible

@@ -5,24 +5,23 @@ vibration has to be taken again by the normal damping of the contacts. Steps tha
 it, too (BDF damps what it does not follow); the vibrations are then smaller than they are in the bearing, and with them loads,
 rolling resistance and slip. What is left of them does not show this, but what was taken does: the residual of the energy audit
 stands beside the energy that damping took, and both together are what fed the vibrations. Where the integration's share is more
-than `SHARE`, and large enough beside the elastic energy to matter, a piece of the run is repeated with much tighter tolerances,
-and losses and loads of both are compared. Where they differ, a longer piece is repeated, which tells a difference from chance
-(docs/theory/numerics.md#vibrations-that-steps-do-not-resolve).
+than `SHARE`, and large enough beside the elastic energy to matter, a piece of the run is repeated with much tighter tolerances
+(`trbdyn.run.probe`, docs/theory/numerics.md#vibrations-that-steps-do-not-resolve).
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trbdyn import _core
-from trbdyn.errors import InputError
-from trbdyn.run.options import ACCURACY, RunOptions
+from trbdyn.model.motion import History
+from trbdyn.run.energies import LEAST_ENERGY, LEAST_STORED_SHARE, Span, missing
+from trbdyn.run.probe import SHORTEST, Probe, probe, reached
+from trbdyn.statics.seat import Seating
 
 if TYPE_CHECKING:
     from trbdyn.run.simulation import Simulation
@@ -50,8 +49,6 @@ LONGER: Final = 80e-3
 """The same of the one that repeats a difference."""
 GROWTH: Final = 10e-3
 """Time at the beginning of a probe that is left to vibrations to grow to their size (s); half of a shorter one."""
-SHORTEST: Final = 1e-3
-"""Bearing time below which a comparison says nothing (s)."""
 STEPS: Final = 20_000
 """Steps of a probe with tighter tolerances at most, or `STEPS_SHARE` of the simulation's own steps if that is more."""
 STEPS_LONGER: Final = 60_000
@@ -61,219 +58,182 @@ STEPS_IN_ALL: Final = 80_000
 STEPS_SHARE: Final = 0.05
 LEAST_STEPS: Final = 2000
 """Steps below which no further probe is begun."""
-INTERVAL: Final = 1e-4
-"""Time between the instants at which a probe compares the loads (s)."""
-BLOCKS: Final = 8
-"""Pieces of a probe after its beginning, whose scatter says how well its difference is known."""
-NOTABLE: Final = 0.02
-"""Difference of the loss, or of the mean load of the rollers, from which on a run warns."""
 OPEN: Final = 0.1
 """Difference that a probe must exclude."""
 OPEN_UNCLEAR: Final = 0.05
 """The same where vibrations grow or are most of the loads."""
-FINER: Final = 0.1
-"""Factor of the tolerances where they are those of 'reference' already, or smaller."""
+LEFT_OPEN: Final = 3.0
+"""Losses over the kinetic energy and over the relative tolerance, below which the losses are measured again: steps may change the
+kinetic energy of a roller by twice that tolerance."""
+TIGHTER: Final = "try accuracy='reference', or smaller tolerances"
 
 
 @dataclass(frozen=True)
-class Difference:
-    """How much larger a quantity is with tighter tolerances, relative to its value, and half of the 95 % confidence interval."""
-
-    value: float
-    half_width: float
-
-    @property
-    def within(self) -> float:
-        """Bound of its size."""
-        return abs(self.value) + self.half_width
-
-    def notable(self, *, certain: bool) -> bool:
-        """Whether it is said: beyond `NOTABLE`, and beyond the scatter of runs that are as good if it has to be `certain`."""
-        return not abs(self.value) <= (max(NOTABLE, self.half_width) if certain else NOTABLE)
-
-    def said(self, what: str) -> str:
-        if abs(self.value) <= self.half_width:
-            return f"{what} right within {100.0 * self.within:.2g} %"
-        way = "low" if self.value > 0.0 else "high"
-        return f"{what} {100.0 * abs(self.value):.2g} +/- {100.0 * self.half_width:.2g} % too {way}"
-
-
-@dataclass(frozen=True)
-class Probe:
-    """A piece of a run, repeated with tighter tolerances.
-
-    Attributes
-    ----------
-    since, until : float
-        The piece (s).
-    loss, load : Difference
-        Of the lost power, and of the mean load of a roller on the outer raceway.
-    steps : int
-        Steps that it took with the tighter tolerances.
+class Suspect:
+    """A span up to a time (s) in which the integration takes much from vibrations: what it took, see `_taken`; and the latest
+    span before it in which a jump of a load or a speed began.
     """
 
-    since: float
+    share: float
+    size: float
+    span: Span
     until: float
-    loss: Difference
-    load: Difference
-    steps: int
+    jump: Span | None
 
-    def notable(self, *, certain: bool) -> bool:
-        """Whether a difference is said, see `Difference.notable`."""
-        return self.loss.notable(certain=certain) or self.load.notable(certain=certain)
 
-    def leaves(self, difference: float) -> bool:
-        """Whether it leaves a difference of this size possible."""
-        return not max(self.loss.within, self.load.within) <= difference
+@dataclass
+class Seen:
+    """What was seen of the vibrations of a bearing since a simulation began, and what was measured of them."""
 
-    def said(self) -> str:
+    suspect: Suspect | None = None
+    """The span in which the integration took most from vibrations."""
+    jump: Span | None = None
+    """The latest span in which a jump of a load or a speed began."""
+    probed: Probe | None = None
+    notable: bool = True
+    probe_steps: int = 0
+    probed_size: float = 0.0
+
+
+class Vibrations:
+    """Judges what the integration takes from the vibrations of a bearing; `whole` is the time since its simulation began."""
+
+    def __init__(self, sim: Simulation, bearing: SeatedBearing, whole: Span, seen: Seen) -> None:
+        self._sim, self._bearing, self._whole, self._seen = sim, bearing, whole, seen
+        self._jumps, self._jumped = _jumps(sim)
+
+    def look(self, span: Span, now: dict[str, float], time: float) -> None:
+        """Look at a span that ends at a time (s) with these energies."""
+        self._suspect(span, now, time)
+        if np.any((self._jumps > span.since) & (self._jumps <= time)):
+            self._seen.jump = span
+
+    def judge(self, run: Span, now: dict[str, float], time: float) -> str | None:
+        """What the integration takes from vibrations up to the end of a run, in words, if it does something to losses or loads:
+        measured by a probe.
+        """
+        seen = self._seen
+        self._suspect(run, now, time)
+        if run.since > self._whole.since:
+            self._suspect(self._whole, now, time)
+        if seen.suspect is None:
+            return None
+        suspect = seen.suspect
+        # with next to no damping large vibrations go on growing, and where they are most of the elastic energy a probe scatters
+        # with them: a difference within the scatter is then no proof that there is none
+        unclear = suspect.size > (SIZE if suspect.share > GROWING else MOST)
+        most = OPEN_UNCLEAR if unclear else OPEN
+        if suspect.size > seen.probed_size and self._probe(suspect, LENGTH, STEPS):
+            seen.probed_size = suspect.size
+            seen.notable = seen.probed is None or seen.probed.notable(certain=not unclear) or seen.probed.leaves(most)
+            if seen.notable and seen.probed is not None:
+                self._probe(suspect, LONGER, STEPS_LONGER)
+                seen.notable = seen.probed.notable(certain=True) or seen.probed.leaves(most)
+        if not seen.notable:
+            return None
+        damped = self._damped(now)
+        took = f"takes {100.0 * suspect.share:.3g} % of the energy of these vibrations" + (
+            " in place of damping" if damped else ""
+        )
+        measured = "what that does could not be measured" if seen.probed is None else seen.probed.said()
+        advice = TIGHTER
+        if not damped:
+            advice = "give the contacts the damping that they have (effects.damping), or try smaller tolerances"
+        where = f"near {suspect.span.since:.6g} s rollers vibrate on their raceways"
+        return f"{where}, and the integration {took}: {measured}; {advice}"
+
+    def small_losses(self, now: dict[str, float], time: float) -> str | None:
+        """Measure losses that are smaller than what the tolerances leave open in the kinetic energy of rollers that turn fast; in
+        words, if they are not right.
+        """
+        seen, whole = self._seen, self._whole
+        _, _, lost = missing(whole.first, now)
+        kinetic = abs(now["kinetic_energy"])
+        least = max(LEAST_STORED_SHARE * kinetic, LEAST_ENERGY)
+        most = min(STEPS, STEPS_IN_ALL - seen.probe_steps)
+        if not least < lost < LEFT_OPEN * self._sim.options.tolerances.rtol * kinetic or whole.state is None:
+            return None
+        if time - whole.since < SHORTEST or most < LEAST_STEPS:
+            return None
+        length = min(time - whole.since, LENGTH)
+        found = probe(self._sim, self._bearing, whole.since, whole.state, most, length, GROWTH)
+        seen.probe_steps += most if found is None else found.steps
+        if found is not None and not found.notable(certain=False):
+            return None
+        measured = "how right they are could not be measured" if found is None else found.said()
         return (
-            f"{1e3 * (self.until - self.since):.2g} ms from {self.since:.6g} s on were repeated with tighter tolerances "
-            f"({self.steps} steps): beside them {self.loss.said('the loss is')}, {self.load.said('the load of a roller')}"
+            f"from {whole.since:.6g} s to {time:.6g} s the bearing lost {lost:.2g} J, less than the tolerances leave open beside "
+            f"a kinetic energy of {kinetic:.2g} J: {measured}; {TIGHTER}"
         )
 
+    def _suspect(self, span: Span, now: dict[str, float], time: float) -> None:
+        """Keep the span in which the integration takes most from vibrations."""
+        seen = self._seen
+        share, size = _taken(span, now, time)
+        matters = share > SHARE and size > (SIZE if self._damped(now) else SIZE_UNDAMPED)
+        if matters and time - span.since >= SHORTEST and (seen.suspect is None or size > seen.suspect.size):
+            seen.suspect = Suspect(share, size, span, time, seen.jump)
 
-def taken(missing: float, damped: float, elastic: float, span: float) -> tuple[float, float]:
-    """Share of the vibrations' energy that the integration took, and what it took within `MEMORY` over the elastic energy.
+    def _probe(self, suspect: Suspect, length: float, most: int) -> bool:
+        """Repeat a piece with tighter tolerances, if there are steps left for it; what was measured before stays if it fails."""
+        seen, own = self._seen, int(STEPS_SHARE * self._sim.statistics["steps"])
+        most = min(max(most, own), max(STEPS_IN_ALL, own) - seen.probe_steps)
+        place = self._piece(suspect, length, most)
+        if most < LEAST_STEPS or place is None:
+            return False
+        since, state, length, growth = place
+        before = seen.probed
+        if before is not None and before.since == since and before.until >= since + (1.0 - 1e-9) * length:
+            return False
+        found = probe(self._sim, self._bearing, since, state, most, length, growth)
+        seen.probe_steps += most if found is None else found.steps
+        seen.probed = found or seen.probed
+        return True
 
-    Parameters
-    ----------
-    missing : float
-        Energy that the integration took, or made if negative (J).
-    damped : float
-        Energy that the normal damping of the contacts took (J).
-    elastic : float
-        Mean elastic energy (J).
-    span : float
-        Time (s).
+    def _piece(self, suspect: Suspect, length: float, most: int) -> tuple[float, Array, float, float] | None:
+        """Where a probe begins (s), the state there, its length and what is left to vibrations to grow (s).
+
+        A jump of a load or speed excites vibrations at once: the piece begins there, where the run has not lost them yet. What
+        follows the jump is compared up to the next one, as other loads have other losses.
+        """
+        span = suspect.span
+        if span.state is None:
+            return None
+        usual = span.since, span.state, length, GROWTH
+        ends = np.concatenate([[-math.inf], self._jumps, [math.inf]])
+        common = np.minimum(ends[1:], suspect.until) - np.maximum(ends[:-1], span.since)
+        first, last = ends[(place := int(np.argmax(common))) : place + 2]
+        begin = span if first >= span.since else suspect.jump
+        rest = last - span.since
+        if common[place] < SHORTEST:
+            return usual
+        if begin is None or begin.state is None or begin.since > first or span.since - first > LENGTH:
+            return (*usual[:2], min(length, rest), usual[3]) if rest > 2.0 * SHORTEST else usual
+        state = reached(self._sim, begin.since, begin.state, float(first), most)
+        growth = float(self._jumped[place - 1] - first)
+        return usual if state is None else (float(first), state, min(length, last - first), growth)
+
+    def _damped(self, now: dict[str, float]) -> bool:
+        """Whether contacts have damped anything since the simulation began."""
+        return now.get("loss_damping", 0.0) > self._whole.first.get("loss_damping", 0.0)
+
+
+def _jumps(sim: Simulation) -> tuple[Array, Array]:
+    """Where jumps of loads and speeds that do not repeat begin and end (s): knots close together are one."""
+    subject = sim.subject
+    given = () if isinstance(subject, Seating) else subject.quantities().values()
+    times = [q.times for q in given if isinstance(q, History) and not q.repeats]
+    knots = np.unique(np.concatenate([[], *times]))
+    apart = np.diff(knots, prepend=-math.inf, append=math.inf) > 2.0 * SHORTEST
+    return knots[apart[:-1]], knots[apart[1:]]
+
+
+def _taken(span: Span, now: dict[str, float], time: float) -> tuple[float, float]:
+    """Share of the vibrations' energy that the integration took in a span that ends at a time (s), and what it took within
+    `MEMORY` over the mean elastic energy.
     """
-    share = abs(missing) / max(abs(missing) + max(damped, 0.0), 1e-300)
-    return share, abs(missing) / max(span, 1e-300) * MEMORY / max(elastic, 1e-300)
-
-
-def matter(share: float, size: float, *, damped: bool) -> bool:
-    """Whether what the integration took may have changed loads and losses."""
-    return share > SHARE and size > (SIZE if damped else SIZE_UNDAMPED)
-
-
-def tighter(options: RunOptions) -> RunOptions:
-    """Options with tolerances that resolve the vibrations of contacts: those of 'reference', or a tenth of smaller ones."""
-    own, reference = options.tolerances.model_dump(), ACCURACY["reference"].model_dump()
-    finest = all(own[name] < 2.0 * value for name, value in reference.items())
-    values = {name: FINER * own[name] if finest else min(own[name], value) for name, value in reference.items()}
-    return options.replace(accuracy="reference", **values)
-
-
-def probe(
-    sim: Simulation,
-    bearing: SeatedBearing,
-    time: float,
-    vector: Array,
-    most_steps: int,
-    length: float = LENGTH,
-    growth: float = GROWTH,
-) -> Probe | None:
-    """Repeat a piece of a run with its own tolerances and with tighter ones, which leaves the simulation as it is.
-
-    Parameters
-    ----------
-    sim : Simulation
-        Whose run it is.
-    bearing : SeatedBearing
-        Whose losses and loads are compared.
-    time, vector : float, ndarray
-        Where the piece begins (s), and the state there.
-    most_steps : int
-        Steps with the tighter tolerances.
-    length : float
-        Bearing time of the piece (s).
-    growth : float
-        Time at its beginning that is left to vibrations to grow (s).
-
-    Returns
-    -------
-    Probe or None
-        None where that many steps lead nowhere, or the tighter run fails.
-    """
-    times = np.linspace(time, time + length, max(round(length / INTERVAL), 4 * BLOCKS) + 1)
-    fine, steps = _run(sim, tighter(sim.options), times, vector, most_steps)
-    rows = len(fine)
-    if rows < 2 * BLOCKS + 1 or times[rows - 1] - time < SHORTEST:
-        return None
-    own, _ = _run(sim, sim.options, times[:rows], vector, 4 * most_steps)
-    if len(own) < rows:
-        return None
-    return Probe(time, float(times[rows - 1]), *_compared(bearing, times[:rows], own, fine, growth), steps)
-
-
-def reached(sim: Simulation, time: float, vector: Array, until: float, most_steps: int) -> Array | None:
-    """The state at a knot of a load or speed, which steps end at: from an earlier one with the run's own tolerances.
-
-    Parameters
-    ----------
-    sim : Simulation
-        Whose run it is.
-    time, vector : float, ndarray
-        Where it begins (s), and the state there.
-    until : float
-        The time of the knot (s).
-    most_steps : int
-        Steps after which it is given up.
-
-    Returns
-    -------
-    ndarray or None
-        The state; None where it was not reached.
-    """
-    try:
-        core = sim._seated.open(time, vector, sim.options.settings())
-        rows = np.empty((1, core.row_length))
-        core.run(np.array([until]), rows, most_steps)
-    except (InputError, ValueError, _core.CoreStepError):
-        return None
-    return core.state() if math.isclose(core.time, until, rel_tol=1e-9) else None
-
-
-def _run(sim: Simulation, options: RunOptions, times: Array, vector: Array, most_steps: int) -> tuple[Array, int]:
-    """The records that were reached, and the steps that it took."""
-    try:
-        core = sim._seated.open(float(times[0]), vector, options.settings())
-        rows = np.empty((times.size, core.row_length))
-        try:
-            reached, steps = core.run(times, rows, most_steps)
-        except _core.CoreStepError as error:
-            reached, steps = getattr(error, "rows", 0), most_steps
-    except (InputError, ValueError):
-        return np.empty((0, 0)), 0
-    return rows[:reached], steps
-
-
-def _compared(
-    bearing: SeatedBearing, times: Array, own: Array, fine: Array, growth: float
-) -> tuple[Difference, Difference]:
-    """Differences of loss and load over a piece without its beginning, where vibrations grow to their size."""
-    losses, load = [], slice(0, 0)
-    for name, at, shape in bearing.record_layout:
-        if name.startswith("loss_"):
-            losses.append(at)
-        if name == "outer_load":
-            load = slice(at, at + math.prod(shape))
-    begin = min(int(np.searchsorted(times, times[0] + (1.0 - 1e-9) * growth)), (len(times) - 1) // 2)
-    ends = np.linspace(begin, len(times) - 1, BLOCKS + 1).astype(int)
-
-    def means(rows: Array) -> tuple[Array, Array]:
-        lost = np.diff(rows[ends][:, losses].sum(axis=1)) / np.diff(times[ends])
-        loads = rows[:, load].mean(axis=1)
-        return lost, np.array([loads[a:b].mean() for a, b in pairwise(ends)])
-
-    first, second = (
-        _difference(fine_means, own_means) for own_means, fine_means in zip(means(own), means(fine), strict=True)
-    )
-    return first, second
-
-
-def _difference(fine: Array, own: Array) -> Difference:
-    scale = max(abs(float(np.mean(own))), 1e-300)
-    off = (fine - own) / scale
-    # 2.36: Student's t of seven degrees of freedom
-    return Difference(float(np.mean(off)), 2.36 * float(np.std(off, ddof=1)) / math.sqrt(off.size))
+    lacking = abs(missing(span.first, now)[0])
+    damped = now.get("loss_damping", 0.0) - span.first.get("loss_damping", 0.0)
+    share = lacking / max(lacking + max(damped, 0.0), 1e-300)
+    elastic = span.elastic / max(span.looks, 1)
+    return share, lacking / max(time - span.since, 1e-300) * MEMORY / max(elastic, 1e-300)
