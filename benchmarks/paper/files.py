@@ -154,7 +154,8 @@ def write_point(path: Path, result: Result, history: History, about: Mapping[str
     FileError
         If it cannot be written.
     """
-    from trbdyn.results.result_file import Part, ResultWriter
+    from trbdyn.results.hdf5_file import Part
+    from trbdyn.results.result_file import ResultWriter
 
     fields = [entry for entry in result.fields if entry.name not in OMITTED]
     arrays = [result[entry.name].reshape(len(result), -1) for entry in fields]

@@ -21,7 +21,8 @@ from paper.growth import growth_of_history
 from paper.points import Condition, Point, StartKind
 from trbdyn.errors import FileError
 from trbdyn.results import observables
-from trbdyn.results.result import Result, load
+from trbdyn.results.assembly import load
+from trbdyn.results.result import Result
 from trbdyn.results.summary import clean
 
 Array = NDArray[np.float64]

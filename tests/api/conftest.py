@@ -16,7 +16,7 @@ from trbdyn.model.motion import History
 from trbdyn.results.fields import Field
 from trbdyn.results.file_format import RunInfo
 from trbdyn.results.result import Result
-from trbdyn.results.sources import MemorySource
+from trbdyn.results.sources import RecordsSource
 
 Z, SLOTS = 12, 4
 RADIAL_PLAY, AXIAL_PLAY = 0.25e-3, 0.4e-3
@@ -52,12 +52,9 @@ class Synthetic:
     def result(self, scene: Any, records: NDArray[np.float64] | None = None, **changes: Any) -> Result:
         """The run as a result in memory, with its own records or with others."""
         rows = self.records if records is None else records
-        arrays = {}
-        for name, offset, shape in self.layout:
-            arrays[name] = rows[:, offset : offset + int(np.prod(shape))].reshape(len(rows), *shape)
-            arrays[name].flags.writeable = False
+        places = {name: (offset, shape) for name, offset, shape in self.layout}
         info = RunInfo(scene=scene.to_dict(), **{"geometry": self.geometry} | self.ending() | changes)
-        return Result(MemorySource(self.fields, len(rows), arrays), info, scene)
+        return Result(RecordsSource([rows], self.fields, places), info, scene)
 
     def column(self, name: str) -> NDArray[np.float64]:
         """A field of the records."""

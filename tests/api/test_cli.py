@@ -20,7 +20,8 @@ from trbdyn.cli import main
 from trbdyn.cli.called import command
 from trbdyn.cli.demo import TURNS
 from trbdyn.errors import LoadError, StepError
-from trbdyn.results.result import Result, load
+from trbdyn.results.assembly import load
+from trbdyn.results.result import Result
 from trbdyn.results.result_file import Part, ResultWriter
 
 

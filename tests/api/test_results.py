@@ -28,14 +28,17 @@ import trbdyn as trb
 from trbdyn.errors import FileError, InputError
 from trbdyn.results import fields as field_table
 from trbdyn.results import file_source, hdf5_file, result_file
+from trbdyn.results.assembly import load
 from trbdyn.results.file_format import BLOCK_ROWS, SCHEMA_VERSION, SINGLE
 from trbdyn.results.file_format import as_kept as kept_in_a_file
-from trbdyn.results.result import Result, load
-from trbdyn.results.result_file import Part, ResultWriter
+from trbdyn.results.hdf5_file import Part
+from trbdyn.results.result import Result
+from trbdyn.results.result_file import ResultWriter
 
 
 def write(path: Path, run: Any, scene: Any, *, chunk: int = 500, finish: bool = True, **options: Any) -> Path:
-    part = Part(scene, run.layout, run.fields, options.pop("meta", {}), run.geometry)
+    fields = field_table.select(run.fields, options.pop("groups", None))
+    part = Part(scene, run.layout, fields, options.pop("meta", {}), run.geometry)
     with ResultWriter(path, part, **options) as writer:
         for start in range(0, len(run.records), chunk):
             writer.append(run.records[start : start + chunk])

@@ -142,7 +142,7 @@ READERS = {
     "trbdyn.model.drawn.opened.opened",
     "trbdyn.model.drawn.read.read_cage",
     "trbdyn.model.roller.Profile.from_csv",
-    "trbdyn.results.result.load",
+    "trbdyn.results.result.load_bearing",
     "trbdyn.model.drawn.trace_file.points_of",
     "trbdyn.model.roller.Profile.from_trace",
     "trbdyn.model.trace.read_trace",

@@ -15,8 +15,7 @@ from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
 from trbdyn.model.assembly import Assembly
 from trbdyn.results.observables.energy import EnergyAudit, energy_audit
-from trbdyn.results.result import Result
-from trbdyn.results.result import load as load_bearing
+from trbdyn.results.result import Result, load_bearing
 from trbdyn.results.summary import Summary
 
 Array = NDArray[np.float64]
@@ -304,6 +303,6 @@ def load(path: str | os.PathLike[str], *, bearing: str = "") -> Any:
 
     table = None if bearing else assembly_in(path)
     if table is None:
-        return load_bearing(path, bearing=bearing)
+        return load_bearing(path, bearing)
     assembly = None if table["assembly"] is None else Assembly.from_dict(table["assembly"])
-    return AssemblyResult({name: load_bearing(path, bearing=name) for name in table["bearings"]}, assembly)
+    return AssemblyResult({name: load_bearing(path, name) for name in table["bearings"]}, assembly)

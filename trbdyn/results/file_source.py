@@ -1,14 +1,18 @@
-"""Reads a result file: what it says of itself, its fields, and the bearings in it."""
+"""Reads a result file: what it says of itself, its fields, and the bearings in it.
+
+A file from elsewhere may be damaged, or made to lead astray: what lies in it is looked at before it is read.
+"""
 
 from __future__ import annotations
 
 import json
+import math
 import os
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import h5py
 import numpy as np
@@ -29,10 +33,11 @@ from trbdyn.results.file_format import (
     reason,
     stored_type,
 )
-from trbdyn.results.hdf5_checks import read_own, read_text_or_state
 
 Array = NDArray[np.float64]
 
+MOST_TEXT: Final = 64 << 20
+"""Most bytes of what a result holds besides its records: texts, last state, peaks."""
 _READ_ERRORS = (
     OSError,
     RuntimeError,
@@ -200,11 +205,6 @@ class FileSource:
         """The file that it reads from."""
         return (self.path,)
 
-    @property
-    def head(self) -> dict[str, Any]:
-        """What the file says of itself."""
-        return _table_of_head(self.path, self._head)
-
     def _read_info(self, file: h5py.Group, head: dict[str, Any], ending: dict[str, Any]) -> RunInfo:
         geometry, meta, scene = (_table(head[key]) for key in ("geometry", "meta", "scene"))
         _check_files(self.path, scene)
@@ -256,35 +256,34 @@ class FileSource:
     def part(self, name: str, rows: slice) -> Array:
         """Some records of one field, which are not kept."""
         with self.held_open(), _said(self.path):
-            return np.asarray(self._held[threading.get_ident()][name][rows], dtype=float)
+            return np.asarray(self._file()[name][rows], dtype=float)
 
     def read(self, name: str) -> Array:
         """All records of one field, shape (n_records, ...); read once and kept. A FileError if the file is damaged, or has been
         replaced since it was opened first.
         """
         if name not in self._cache:
-            me = threading.get_ident()
-            if me in self._held:
-                with _said(self.path):
-                    if me not in self._checked:
-                        self._check_run(self._held[me])
-                        self._checked.add(me)
-                    values = self._values(self._held[me], name)
-            else:
-                with opened(self.path, self.bearing) as file:
-                    self._check_run(file)
-                    values = self._values(file, name)
+            with self.held_open(), _said(self.path):
+                values = self._values(self._file(), name)
             values.flags.writeable = False
             self._cache[name] = values
         return self._cache[name]
 
-    def _check_run(self, file: h5py.Group) -> None:
-        """Refuse a file that holds another run by now; a run that was resumed has a new file with the same records."""
-        head = _read_head(self.path, file)
-        if head != self._head:
-            table = _table_of_head(self.path, head)
-            if (table["run_id"], table["first_record"]) != (self.run_id, self.first_record):
-                raise FileError(f"{self.path}: the file has been replaced since it was loaded; load it again")
+    def _file(self) -> h5py.Group:
+        """What this thread holds open, which is looked at once: a file that holds another run by now is refused. A run that was
+        resumed has a new file with the same records.
+        """
+        me = threading.get_ident()
+        if me not in self._held:
+            raise FileError(f"{self.path}: there is no such file")
+        if me not in self._checked:
+            head = _read_head(self.path, self._held[me])
+            if head != self._head:
+                table = _table_of_head(self.path, head)
+                if (table["run_id"], table["first_record"]) != (self.run_id, self.first_record):
+                    raise FileError(f"{self.path}: the file has been replaced since it was loaded; load it again")
+            self._checked.add(me)
+        return self._held[me]
 
     def _values(self, file: h5py.Group, name: str) -> Array:
         entry = next(entry for entry in self.fields if entry.name == name)
@@ -320,3 +319,40 @@ def _table(value: Any) -> dict[str, Any]:
 def _texts(value: object) -> tuple[str, ...]:
     """A list of sentences; nothing where a file holds anything else."""
     return tuple(str(text) for text in value) if isinstance(value, list) else ()
+
+
+def read_text_or_state(group: h5py.Group, name: str, count: int | None = None) -> NDArray[Any]:
+    """What `read_own` gives of a dataset beside the records, which is never large, however small it is packed."""
+    return read_own(group, name, count, most=MOST_TEXT)
+
+
+def read_own(group: h5py.Group, name: str, count: int | None = None, *, most: int | None = None) -> NDArray[Any]:
+    """A dataset that lies in this file itself, or its first `count` rows: no links or storage that lead elsewhere, and no
+    values that were never written, which take no room in a file but much when they are read.
+
+    A FileError if there is no such dataset, or it does not hold so many rows, or they take more than `most` bytes in memory.
+    """
+    where, links, key = group.file.filename, group.id.links, name.encode()
+    if not links.exists(key):
+        raise FileError(f"{where}: the file is damaged: it has no {name!r}")
+    if links.get_info(key).type != h5py.h5l.TYPE_HARD:
+        raise FileError(f"{where}: {name!r} leads out of the file, which results never do")
+    dataset = group[name]
+    if not isinstance(dataset, h5py.Dataset) or dataset.ndim < 1:
+        raise FileError(f"{where}: {name!r} is not what a result holds there")
+    made = dataset.id.get_create_plist()
+    if made.get_layout() == h5py.h5d.VIRTUAL or made.get_external_count() > 0:
+        raise FileError(f"{where}: {name!r} leads out of the file, which results never do")
+    wanted = dataset.shape[0] if count is None else count
+    shape = dataset.chunks
+    held = (
+        0 if shape is None else dataset.id.get_num_chunks() * math.prod(shape) // max(1, math.prod(dataset.shape[1:]))
+    )
+    if not 0 <= wanted <= min(dataset.shape[0], held):
+        raise FileError(
+            f"{where}: the file is damaged: {wanted} values of {name!r} shall be there, but it holds {held}"
+        )
+    size = max(math.prod(dataset.shape[1:]) * wanted, math.prod(shape or ())) * dataset.dtype.itemsize
+    if most is not None and size > most:
+        raise FileError(f"{where}: {name!r} would take {size / 1e6:.0f} MB in memory, more than a result holds there")
+    return np.asarray(dataset[:wanted])

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,7 @@ from numpy.typing import NDArray
 from trbdyn.base.locks import is_locked
 from trbdyn.base.version import __version__
 from trbdyn.results.chunks import LEVEL, packed
-from trbdyn.results.fields import DIMENSIONS, Field
+from trbdyn.results.fields import DIMENSIONS, Field, Layout
 from trbdyn.results.file_format import (
     ASSEMBLY,
     ASSEMBLY_SCHEMA,
@@ -28,6 +29,7 @@ from trbdyn.results.file_format import (
     LIBVER,
     SCHEMA,
     SCHEMA_VERSION,
+    as_kept,
     json_text,
     stored_type,
 )
@@ -36,46 +38,71 @@ _LABELS = {dim for dims in DIMENSIONS.values() for dim in dims} - {"roller", "sl
 """Dimensions whose entries have the letters of the name as labels."""
 
 
-Bearing = tuple[str, Mapping[str, Any], Sequence[Field], Mapping[str, tuple[int, ...]]]
-"""A bearing of a file: its group, what is known before the run, the fields that are kept, and their shapes in one record."""
-
-
-def make(path: Path, bearings: Sequence[Bearing], assembly: Mapping[str, Any] | None, *, rows: int) -> None:
-    """Make a result file without records, with so many rows in a chunk; a file that is there is emptied. Where the first
-    bearing has no group, it has the file for itself; else `assembly` says what the bearings sit on.
+@dataclass(frozen=True)
+class Part:
+    """A bearing of a run, as its file has it: its scene, where fields are in a record, those that are kept, what JSON holds of
+    versions and settings, its derived geometry (SI), and its group in the file, none where it has the file for itself.
     """
-    names = [name for name, *_ in bearings]
+
+    scene: Any
+    layout: Layout
+    fields: Sequence[Field]
+    meta: Mapping[str, Any] = field(default_factory=dict)
+    geometry: Mapping[str, float] = field(default_factory=dict)
+    name: str = ""
+
+    @cached_property
+    def places(self) -> dict[str, tuple[int, tuple[int, ...]]]:
+        """Offset and shape of each field that is kept, in a record."""
+        every = {name: (offset, tuple(shape)) for name, offset, shape in self.layout}
+        return {entry.name: every[entry.name] for entry in self.fields}
+
+    @property
+    def row_bytes(self) -> int:
+        """Bytes of a record in the file."""
+        sizes = {name: int(np.prod(shape)) for name, (_, shape) in self.places.items()}
+        return sum(stored_type(entry).itemsize * sizes[entry.name] for entry in self.fields)
+
+    def group(self, file: h5py.File) -> h5py.Group:
+        """Its part of a file of `make`."""
+        return file[self.name] if self.name else file
+
+    def append(self, file: h5py.File, pieces: Sequence[NDArray[np.float64]], count: int) -> None:
+        """Add the first records of some pieces."""
+        group = self.group(file)
+        for entry in self.fields:
+            offset, shape = self.places[entry.name]
+            end = offset + int(np.prod(shape))
+            rows = np.concatenate([piece[:, offset:end] for piece in pieces])[:count]
+            append(group, entry.name, as_kept(entry, rows).reshape(-1, *shape))
+
+
+def make(
+    path: Path, parts: Sequence[Part], run: Mapping[str, Any], assembly: Mapping[str, Any] | None, *, rows: int
+) -> None:
+    """Make a result file without records, with so many rows in a chunk; a file that is there is emptied. `run` names the run and
+    its first record; `assembly` says what several bearings sit on.
+    """
     with h5py.File(path, "w", libver=LIBVER, locking=False) as file:
-        if names[0]:
+        if parts[0].name:
             about = {"schema": ASSEMBLY_SCHEMA, "schema_version": ASSEMBLY_VERSION, "trbdyn_version": __version__}
             about |= {"created": datetime.now(UTC).isoformat()}
             file.attrs.update(about)
-            text = json_text(about | {"bearings": names, "assembly": assembly}).encode()
+            text = json_text(about | {"bearings": [part.name for part in parts], "assembly": assembly}).encode()
             file.create_dataset(ASSEMBLY, data=np.array([text]), chunks=(1,), fletcher32=True)
-        for name, head, fields, shapes in bearings:
-            _fill(file.create_group(name) if name else file, head, fields, shapes, rows=rows)
+        for part in parts:
+            _fill(file.create_group(part.name) if part.name else file, part, run, rows=rows)
 
 
-def group_of(file: h5py.File, bearing: str) -> h5py.Group:
-    """A bearing's part of a file of `make`."""
-    return file[bearing] if bearing else file
-
-
-def _fill(
-    file: h5py.Group,
-    head: Mapping[str, Any],
-    fields: Sequence[Field],
-    shapes: Mapping[str, tuple[int, ...]],
-    *,
-    rows: int,
-) -> None:
-    """Make the objects of a result in an empty file or group."""
+def _fill(file: h5py.Group, part: Part, of_run: Mapping[str, Any], *, rows: int) -> None:
+    """Make the objects of a bearing in an empty file or group."""
     created = datetime.now(UTC).isoformat()
     about = {"schema": SCHEMA, "schema_version": SCHEMA_VERSION, "trbdyn_version": __version__, "created": created}
-    table = [[entry.name, entry.group, entry.kind, entry.unit, entry.text] for entry in fields]
-    text = json_text(about | dict(head) | {"fields": table}).encode()
-    simple = {name: value for name, value in head["meta"].items() if isinstance(value, str | bool | int | float)}
-    file.attrs.update(about | {"run_id": head["run_id"]} | simple)
+    head = {"scene": part.scene.to_dict(), "meta": dict(part.meta), "geometry": dict(part.geometry)}
+    table = [[entry.name, entry.group, entry.kind, entry.unit, entry.text] for entry in part.fields]
+    text = json_text(about | dict(of_run) | head | {"fields": table}).encode()
+    simple = {name: value for name, value in part.meta.items() if isinstance(value, str | bool | int | float)}
+    file.attrs.update(about | {"run_id": of_run["run_id"]} | simple)
     run = file.create_group("run")
     # each a scale of its own: netCDF's readers would have to make up dimensions otherwise
     made = [
@@ -89,16 +116,15 @@ def _fill(
     for dataset in made:
         h5py.h5ds.set_scale(dataset, h5py.h5i.get_name(dataset).rpartition(b"/")[2])
     run["head"][0] = np.bytes_(text)
-    _make_fields(file, fields, shapes, rows=rows)
+    _make_fields(file, part, rows=rows)
     commit(file, 0)
 
 
-def _make_fields(
-    file: h5py.Group, fields: Sequence[Field], shapes: Mapping[str, tuple[int, ...]], *, rows: int
-) -> None:
+def _make_fields(file: h5py.Group, part: Part, *, rows: int) -> None:
     scales: dict[str, h5py.h5d.DatasetID] = {}
+    shapes = {name: shape for name, (_, shape) in part.places.items()}
     for dim, size in {
-        dim: size for entry in fields for dim, size in zip(entry.dims, shapes[entry.name], strict=True)
+        dim: size for entry in part.fields for dim, size in zip(entry.dims, shapes[entry.name], strict=True)
     }.items():
         if dim in _LABELS:
             scales[dim] = file.create_dataset(dim, data=list(dim), dtype=h5py.string_dtype(), chunks=(size,)).id
@@ -106,12 +132,13 @@ def _make_fields(
             scales[dim] = _dataset(file, dim, (size,), np.dtype("i4"))
             file[dim][:] = np.arange(size)
     made = {
-        entry.name: _dataset(file, entry.name, shapes[entry.name], stored_type(entry), rows=rows) for entry in fields
+        entry.name: _dataset(file, entry.name, shapes[entry.name], stored_type(entry), rows=rows)
+        for entry in part.fields
     }
     scales["time"] = made["time"]
     for dim, scale in scales.items():
         h5py.h5ds.set_scale(scale, dim.encode())
-    for entry in fields:
+    for entry in part.fields:
         for name, value in (("units", entry.unit), ("long_name", entry.text), ("group", entry.group)):
             attribute = h5py.h5a.create(made[entry.name], name.encode(), _text(), h5py.h5s.create(h5py.h5s.SCALAR))
             attribute.write(np.array(value, dtype=h5py.string_dtype()))

@@ -392,27 +392,8 @@ class Result(Derived, Displayed):
         return export(self, path, overwrite=overwrite)
 
 
-def load(path: str | os.PathLike[str], *, bearing: str = "") -> Result:
-    """Load a result file.
-
-    Parameters
-    ----------
-    path : path-like
-        A file written by a run.
-    bearing : str
-        Name of a bearing in the file of an assembly; by default it is the file of one bearing.
-
-    Returns
-    -------
-    Result
-        Its fields are read when they are asked for. If the run was cut off, ``success`` is False and the records up to
-        the last write are there.
-
-    Raises
-    ------
-    FileError
-        If the file is missing, damaged, of another kind or of a later version.
-    """
+def load_bearing(path: str | os.PathLike[str], bearing: str = "") -> Result:
+    """The result of a bearing in the file of several; without a name that in a file of one bearing."""
     from trbdyn.results.file_source import FileSource
 
     source = FileSource(path, bearing)

@@ -8,7 +8,6 @@ import shutil
 import uuid
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 from functools import partial
 from itertools import zip_longest
 from pathlib import Path
@@ -16,7 +15,6 @@ from types import TracebackType
 from typing import Any, Self
 from weakref import WeakSet
 
-import h5py
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -24,15 +22,14 @@ from trbdyn.base.locks import LockedFile, take_lock
 from trbdyn.base.own_files import copy_content, create_draft, exists_already, output_path, put_in_place
 from trbdyn.base.second_thread import SecondThread
 from trbdyn.errors import FileError
-from trbdyn.results import fields as field_table
 from trbdyn.results import hdf5_file
-from trbdyn.results.fields import Field, Layout
-from trbdyn.results.file_format import PEAKS, as_kept, block_rows, json_text, reason, stored_type
+from trbdyn.results.fields import Field
+from trbdyn.results.file_format import PEAKS, block_rows, json_text, reason
 from trbdyn.results.file_source import FileSource
+from trbdyn.results.hdf5_file import Part
 from trbdyn.results.waiting_rows import WaitingRows
 
 Array = NDArray[np.float64]
-
 
 FLUSH_SECONDS = 2.0
 """Wall time that records wait in memory before they are written, if they fill a chunk."""
@@ -50,57 +47,6 @@ COPIED_ROWS = 4096
 
 SPARE_BYTES = 1 << 20
 """Room for HDF5's own bookkeeping that must be free before a write."""
-
-
-@dataclass(frozen=True)
-class Part:
-    """A bearing of a run, as its file has it: its scene, where the fields of its table are in a record, what JSON holds of
-    versions and settings, its derived geometry (SI), and its group in the file, none where it has the file for itself.
-    """
-
-    scene: Any
-    layout: Layout
-    fields: Sequence[Field]
-    meta: Mapping[str, Any] = field(default_factory=dict)
-    geometry: Mapping[str, float] = field(default_factory=dict)
-    name: str = ""
-
-    @property
-    def head(self) -> dict[str, Any]:
-        """What its head says of it."""
-        return {"scene": self.scene.to_dict(), "meta": dict(self.meta), "geometry": dict(self.geometry)}
-
-    def kept(self, groups: Sequence[str] | None) -> _Kept:
-        """What of it is kept of some groups."""
-        places = {name: (offset, tuple(shape)) for name, offset, shape in self.layout}
-        fields = tuple(entry for entry in field_table.select(self.fields, groups) if entry.name in places)
-        return _Kept(self.name, fields, places)
-
-
-@dataclass(frozen=True)
-class _Kept:
-    """What is kept of a bearing: its group, the fields, and their places in a record."""
-
-    name: str
-    fields: tuple[Field, ...]
-    places: Mapping[str, tuple[int, tuple[int, ...]]]
-
-    @property
-    def shapes(self) -> dict[str, tuple[int, ...]]:
-        return {entry.name: self.places[entry.name][1] for entry in self.fields}
-
-    @property
-    def row_bytes(self) -> int:
-        shapes = self.shapes
-        return sum(stored_type(entry).itemsize * int(np.prod(shapes[entry.name])) for entry in self.fields)
-
-    def append(self, group: h5py.Group, pieces: Sequence[Array], count: int) -> None:
-        """Add the first records of some pieces."""
-        for entry in self.fields:
-            offset, shape = self.places[entry.name]
-            end = offset + int(np.prod(shape))
-            rows = np.concatenate([piece[:, offset:end] for piece in pieces])[:count]
-            hdf5_file.append(group, entry.name, as_kept(entry, rows).reshape(-1, *shape))
 
 
 class ResultWriter:
@@ -125,7 +71,6 @@ class ResultWriter:
         path: str | os.PathLike[str],
         *parts: Part,
         assembly: Mapping[str, Any] | None = None,
-        groups: Sequence[str] | None = None,
         run_id: str | None = None,
         first_record: int = 0,
         taken_over: tuple[Sequence[FileSource], int] | None = None,
@@ -136,8 +81,8 @@ class ResultWriter:
         self.path = output_path(path, overwrite=overwrite)
         self.run_id = run_id or uuid.uuid4().hex
         self.n_written = 0
-        self._parts = [part.kept(groups) for part in parts]
-        self._row_bytes = sum(part.row_bytes for part in self._parts)
+        self._parts = parts
+        self._row_bytes = sum(part.row_bytes for part in parts)
         self._block = block_rows(expected, self._row_bytes)
         self._waiting = WaitingRows(self._block)
         self._patience = FLUSH_SECONDS
@@ -145,11 +90,7 @@ class ResultWriter:
         self._second = SecondThread() if beside else None
         self._lock: LockedFile | None = None
         run = {"run_id": self.run_id, "first_record": first_record}
-        bearings = [
-            (kept.name, run | part.head, kept.fields, kept.shapes)
-            for part, kept in zip(parts, self._parts, strict=True)
-        ]
-        make = partial(hdf5_file.make, bearings=bearings, assembly=assembly, rows=self._block)
+        make = partial(hdf5_file.make, parts=parts, run=run, assembly=assembly, rows=self._block)
         with self._guard("cannot be written"):
             replaced = take_lock(self.path) if overwrite and self.path.exists() else None
             try:
@@ -197,7 +138,7 @@ class ResultWriter:
         self._reserve(count * self._row_bytes + SPARE_BYTES)
         with hdf5_file.opened_to_append(draft) as file:
             for part, source in zip(self._parts, older, strict=True):
-                group = hdf5_file.group_of(file, part.name)
+                group = part.group(file)
                 with source.held_open():
                     for start in range(0, count, COPIED_ROWS):
                         rows = slice(start, min(start + COPIED_ROWS, count))
@@ -272,9 +213,9 @@ class ResultWriter:
             if count or endings:
                 with hdf5_file.opened_to_append(self.path) as file:
                     for part, ending in zip_longest(self._parts, endings):
-                        group = hdf5_file.group_of(file, part.name)
+                        group = part.group(file)
                         if count:
-                            part.append(group, pieces, count)
+                            part.append(file, pieces, count)
                         for name, values in (ending or {}).items():
                             hdf5_file.append(group["run"], name, values)
                         hdf5_file.commit(group, self.n_written + count, len(ending["ending"]) if ending else 0)

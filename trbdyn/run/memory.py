@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.results.fields import Field, Layout
-from trbdyn.results.records import RecordsSource
+from trbdyn.results.sources import RecordsSource
 
 Array = NDArray[np.float64]
 
@@ -100,12 +100,12 @@ class Kept:
     def __init__(self, layout: Layout, fields: Sequence[Field]) -> None:
         self.size = 0
         places = {name: (offset, shape) for name, offset, shape in layout}
-        self._fields = tuple(field for field in fields if field.name in places)
+        self.fields = tuple(field for field in fields if field.name in places)
         self._places: dict[str, tuple[int, tuple[int, ...]]] = {}
         self._columns: list[slice] = []
         """Where the fields are in a full record; in a record that is kept they follow each other."""
         width = 0
-        for field in self._fields:
+        for field in self.fields:
             offset, shape = places[field.name]
             count = math.prod(shape)
             self._places[field.name] = (width, tuple(shape))
@@ -113,7 +113,7 @@ class Kept:
             width += count
         self._whole = width == max((offset + math.prod(shape) for offset, shape in places.values()), default=0)
         if self._whole:
-            self._places = {field.name: places[field.name] for field in self._fields}
+            self._places = {field.name: places[field.name] for field in self.fields}
         self._pieces: list[Array] = []
         self._looked = 0
 
@@ -140,4 +140,4 @@ class Kept:
 
     def source(self) -> RecordsSource:
         """The records so far, to read fields from."""
-        return RecordsSource(self._pieces, self._fields, self._places)
+        return RecordsSource(self._pieces, self.fields, self._places)

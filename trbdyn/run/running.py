@@ -24,7 +24,7 @@ from trbdyn.results import fields as field_table
 from trbdyn.results import peaks as peak_table
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.file_format import RunInfo, reason
-from trbdyn.results.result import Result, load
+from trbdyn.results.result import Result, load_bearing
 from trbdyn.run import bias, checkpoint, keeping
 from trbdyn.run.checkpoint import Checkpoint
 from trbdyn.run.faults import check_apart, culprit
@@ -40,7 +40,8 @@ if TYPE_CHECKING:
     from trbdyn.model.assembly import Assembly
     from trbdyn.model.scene import Scene
     from trbdyn.results.file_source import FileSource
-    from trbdyn.results.result_file import Part, ResultWriter
+    from trbdyn.results.hdf5_file import Part
+    from trbdyn.results.result_file import ResultWriter
     from trbdyn.run.simulation import Simulation
 
 Array = NDArray[np.float64]
@@ -65,30 +66,13 @@ STOPPED: Final = "stopped by the user"
 
 @dataclass
 class RunningBearing:
-    """A bearing while it runs.
-
-    Attributes
-    ----------
-    of : SeatedBearing
-        The bearing.
-    layout : list
-        Places of its fields in its part of a row.
-    part : slice
-        Its part of a row.
-    fields : tuple of Field
-        What its records are.
-    until : Until
-        How well its averages are known.
-    kept : Kept
-        Its records in memory.
-    notes, doubts : list of str
-        What is said of it with the result, and what the watch has found.
+    """A bearing while it runs: where its fields are in its part of a row, how well its averages are known, its records in memory,
+    what is said of it with the result, and what the watch has found.
     """
 
     of: SeatedBearing
     layout: Layout
     part: slice
-    fields: tuple[field_table.Field, ...]
     until: Until
     kept: Kept
     notes: list[str]
@@ -141,7 +125,7 @@ class Run:
         kept = Kept(layout, field_table.select(fields, options.save_groups))
         until, said = Until(options.until, self.times.size), bearing.unusual
         self.bearings.append(
-            RunningBearing(bearing, layout, slice(first, first + length), fields, until, kept, list(said), list(said))
+            RunningBearing(bearing, layout, slice(first, first + length), until, kept, list(said), list(said))
         )
 
     def _keep_peaks(self, since: float) -> None:
@@ -176,7 +160,6 @@ class Run:
             output,
             *map(self._in_file, self.bearings),
             assembly=None if sim.assembly is None else sim.assembly.to_dict(),
-            groups=self.options.save_groups,
             run_id=run_id,
             first_record=first,
             taken_over=None if older is None else (older, done - first),
@@ -203,12 +186,12 @@ class Run:
             raise error if isinstance(error, FileError) else FileError(f"{output}: {reason(error)}") from error
 
     def _in_file(self, bearing: RunningBearing) -> Part:
-        from trbdyn.results.result_file import Part
+        from trbdyn.results.hdf5_file import Part
 
         layout = [(name, at + bearing.part.start, shape) for name, at, shape in bearing.layout]
         scene = bearing.of.scene
         geometry = asdict(scene.bearing.geometry)
-        return Part(scene, layout, bearing.fields, self._meta(bearing), geometry, bearing.of.name)
+        return Part(scene, layout, bearing.kept.fields, self._meta(bearing), geometry, bearing.of.name)
 
     def go(self, *, progress: bool) -> Result | AssemblyResult:
         sim = self.sim
@@ -310,7 +293,7 @@ class Run:
             return self._from_memory(bearing, final_time=self.sim._reached)
         assert self.output is not None
         self.writer.flush()
-        return load(self.output, bearing=bearing.of.name)
+        return load_bearing(self.output, bearing.of.name)
 
     def _call_back(self) -> bool:
         """What the callback answers. It may look at the simulation, but not move it. A FileError in a process that it has
@@ -400,7 +383,7 @@ class Run:
 
         assert self.output is not None
         assert self.writer is not None
-        result = load(self.output, bearing=bearing.of.name)
+        result = load_bearing(self.output, bearing.of.name)
         if run_id_in(self.output) != self.writer.run_id:
             raise FileError(f"{self.output}: the result file was replaced by another program after the run had ended")
         return result
