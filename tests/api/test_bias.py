@@ -15,7 +15,7 @@ import trbdyn as trb
 from trbdyn.base.shipped import DATA
 from trbdyn.model.cases import scene_30310
 from trbdyn.reporting import verdict
-from trbdyn.results import peak_band
+from trbdyn.results import notes
 from trbdyn.run.bias import READ, biases, measured, note
 from trbdyn.run.options import ACCURACY
 
@@ -99,7 +99,7 @@ def test_the_peak_after_a_load_drop_is_a_band_that_holds_other_accuracies():
         low, high = (numbers[accuracy][f"pocket_force_peak_{end}"] for end in ("low", "high"))
         assert low < numbers[accuracy]["pocket_force_peak"] < high
         assert low < numbers[other]["pocket_force_peak"] < high
-        assert high / low == pytest.approx(math.exp(2.0 * 1.96 * math.sqrt(2.0) * peak_band.measured()["scatter"]))
+        assert high / low == pytest.approx(math.exp(2.0 * 1.96 * math.sqrt(2.0) * notes.drop_measured()["scatter"]))
     assert "at most" in str(numbers["fast"])
     said = " ".join(text for _, _, text in verdict.verdict(runs["fast"], numbers["fast"]))
     assert "other starts and accuracies give" in said
@@ -114,7 +114,7 @@ def test_bands_after_a_load_drop_hold_the_peaks_of_other_starts_and_accuracies()
         for seed in (11, 12, 13)
     ]
     held = [
-        low < other < high for one in peaks for low, high in [peak_band.band(one)] for other in peaks if other != one
+        low < other < high for one in peaks for low, high in [notes.drop_band(one)] for other in peaks if other != one
     ]
     assert sum(held) >= 0.9 * len(held), peaks
 

@@ -166,7 +166,7 @@ def test_torques_that_differ_are_explained(whirling: Result) -> None:
     effects = vars(whirling.scene.effects)
     whirling.scene.effects = SimpleNamespace(**(effects | {"rolling_pressure_force": True}))
     assert "speed up or slow down" in whirling.summary()["torque_note"]
-    from trbdyn.results.summary import torque_note
+    from trbdyn.results.notes import torque_note
 
     assert torque_note(whirling, 1.25, 1.2501) is None
 
@@ -781,7 +781,7 @@ def test_a_summary_opens_the_file_once(tmp_path: Path, monkeypatch: pytest.Monke
 
 def test_a_law_outside_of_its_range_says_so() -> None:
     """By hand: W = Q/(l E' Re) of a roller's outer contact under 4930 N, and G = alpha0 E' of a cold oil."""
-    from trbdyn.results.ranges import load_groups
+    from trbdyn.results.notes import load_groups
 
     default = trb.cases.scene_30310(3000.0, 4930.0)
     other = default.replace(effects=default.effects.replace(rolling_law="zhou_hoeprich"))

@@ -10,10 +10,10 @@ from trbdyn.results.waiting_rows import WaitingRows
 
 
 @given(
-    block=st.none() | st.integers(1, 7),
+    block=st.integers(1, 7),
     moves=st.lists(st.tuples(st.integers(0, 12), st.sampled_from(["wait", "blocks", "all"])), max_size=20),
 )
-def test_rows_come_out_as_they_went_in(block: int | None, moves: list[tuple[int, str]]) -> None:
+def test_rows_come_out_as_they_went_in(block: int, moves: list[tuple[int, str]]) -> None:
     waiting, came, given_away = WaitingRows(block), 0, [np.empty((0, 2))]
     for count, move in moves:
         if count:
@@ -24,7 +24,7 @@ def test_rows_come_out_as_they_went_in(block: int | None, moves: list[tuple[int,
             earlier = sum(map(len, given_away))
             given_away += waiting.take(whole_blocks=move == "blocks")
             gone = sum(map(len, given_away))
-            if move == "all" or block is None:
+            if move == "all":
                 assert gone == came
             else:
                 # what is kept back is less than a block, and what is given away ends with a block

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from trbdyn import laws
-from trbdyn.results.ranges import RANGES
+from trbdyn.results.notes import RANGES
 
 SOLUTION = Path(__file__).resolve().parents[2] / "benchmarks" / "rolling" / "solution.py"
 pytestmark = pytest.mark.skipif(not SOLUTION.is_file(), reason="the benchmarks are not part of a source distribution")

@@ -89,11 +89,6 @@ def _said(path: Path) -> Iterator[None]:
 def _read_head(path: Path, file: h5py.Group) -> bytes:
     """What the file says of itself, as it is stored."""
     if "run/head" not in file:
-        if ASSEMBLY in file:
-            raise FileError(
-                f"{path}: this file holds several bearings on one shaft: load it with trb.load, or one of them "
-                "with trb.load(path, bearing=...)"
-            )
         if "schema" in file.attrs and "fields" in file:
             raise FileError(
                 f"{path}: written with format version 1, by a trbdyn before its first release; this one reads version "

@@ -23,11 +23,10 @@ from trbdyn.base.shown import Displayed, Shown
 from trbdyn.cage.simulated import cage_modes
 from trbdyn.errors import TrbError
 from trbdyn.model.motion import is_constant
-from trbdyn.results import conditions, observables, peak_band
+from trbdyn.results import conditions, notes, observables
 from trbdyn.results.confidence import confidence
 from trbdyn.results.fields import carrying
 from trbdyn.results.quantities import QUANTITIES
-from trbdyn.results.ranges import rolling_note
 from trbdyn.standards.sheet import Rating, at_equilibrium, life_text, sheet
 
 if TYPE_CHECKING:
@@ -51,8 +50,6 @@ UNPRINTED: Final = ("settled", "settling_time_scale", "settling_reason", "confid
 
 RECORDS_AT_ONCE: Final = 4096
 """Records whose deformed cages are in memory together."""
-RINGS_DIFFER: Final = 0.01
-"""Share by which the torques of the two rings may differ without a word."""
 
 
 class Summary(dict[str, Any], Displayed):
@@ -155,8 +152,8 @@ def _motion(result: Result) -> dict[str, Any]:
         out["outer_speed_rpm"] = float(window.outer_speed.mean()) * 30.0 / np.pi
     out |= averages(window) | extremes(result)
     out["changing"] = conditions.words(result)
-    if "pocket_force_peak" in out and peak_band.drops(result):
-        out["pocket_force_peak_low"], out["pocket_force_peak_high"] = peak_band.band(out["pocket_force_peak"])
+    if "pocket_force_peak" in out and notes.load_drops(result):
+        out["pocket_force_peak_low"], out["pocket_force_peak_high"] = notes.drop_band(out["pocket_force_peak"])
     out["confidence"], out["confidence_note"] = confidence(window, averages, unsettled)
     if not result.has_cage:
         out |= dict.fromkeys(name for name in out if name.startswith("pocket_"))
@@ -287,8 +284,8 @@ def _torque(window: Result) -> dict[str, Any]:
     return {
         "torque": inner,
         "torque_outer": outer,
-        "torque_note": torque_note(window, inner, outer),
-        "rolling_note": rolling_note(window),
+        "torque_note": notes.torque_note(window, inner, outer),
+        "rolling_note": notes.rolling_note(window),
         "torque_split": window.torque_split,
     }
 
@@ -317,22 +314,6 @@ def mean_loss(window: Result) -> float:
     losses = [field.name for field in window.fields if field.name.startswith("loss_")]
     time = window["time"]
     return float(sum(window[name][-1] - window[name][0] for name in losses) / (time[-1] - time[0]))
-
-
-def torque_note(window: Result, inner: float, outer: float) -> str | None:
-    """Why the friction torques on shaft and outer ring (N m) differ, in a sentence; None if they agree."""
-    if abs(outer - inner) <= RINGS_DIFFER * max(abs(inner), abs(outer)):
-        return None
-    effects = window.scene.effects
-    if effects.films and effects.rolling_resistance and not effects.rolling_pressure_force:
-        return (
-            "rolling resistance acts without the film's pressure force on the roller, as in the paper, so moments on a roller "
-            "balance only if its raceways carry different torques; the standard effects have that force, and both rings agree"
-        )
-    return (
-        "rollers and cage speed up or slow down within the window, "
-        "or a moment acts that is neither on the shaft nor on the ring"
-    )
 
 
 def _power(window: Result) -> dict[str, Any]:
@@ -419,7 +400,7 @@ def table(values: Mapping[str, Any]) -> str:
 def shown(values: Mapping[str, Any]) -> Shown:
     """A summary as a table: words, number, unit, and the name in the summary."""
     rows: list[tuple[str, ...]] = []
-    notes: list[str] = []
+    below: list[str] = []
     for name, (words, unit, _) in QUANTITIES.items():
         value = values.get(name)
         if value is None or name in UNPRINTED:
@@ -427,7 +408,7 @@ def shown(values: Mapping[str, Any]) -> Shown:
         if name == "settling":
             rows.append(("settled", _settled_words(values), "", name))
         elif name in ("torque_note", "rolling_note", "confidence_note", "accuracy_note"):
-            notes.append(f"{words}: {value}")
+            below.append(f"{words}: {value}")
         elif isinstance(value, Mapping):
             rows.append((words, "", "", name))
             rows.extend(
@@ -436,7 +417,7 @@ def shown(values: Mapping[str, Any]) -> Shown:
         else:
             number = _number(value, (values.get("confidence") or {}).get(name))
             rows.append((words, life_text(value) if unit == "h" else number, unit, name))
-    return Shown(rows=tuple(rows), head=("quantity", "value", "unit", "name"), notes=tuple(notes))
+    return Shown(rows=tuple(rows), head=("quantity", "value", "unit", "name"), notes=tuple(below))
 
 
 def _settled_words(values: Mapping[str, Any]) -> str:

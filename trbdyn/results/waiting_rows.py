@@ -17,7 +17,7 @@ class WaitingRows:
     looked up again each time. While nothing presses, only whole blocks of records are therefore given away.
     """
 
-    def __init__(self, block: int | None) -> None:
+    def __init__(self, block: int) -> None:
         self._block = block
         self._pieces: list[Array] = []
         self._n_taken = 0
@@ -41,7 +41,7 @@ class WaitingRows:
         """
         taken, self._pieces = self._pieces, []
         count = sum(map(len, taken))
-        left = (self._n_taken + count) % self._block if whole_blocks and self._block is not None else 0
+        left = (self._n_taken + count) % self._block if whole_blocks else 0
         left = min(left, count)
         self._n_taken += count - left
         while left:

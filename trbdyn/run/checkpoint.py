@@ -57,40 +57,10 @@ def digest_of(values: ArrayLike) -> str:
 class Checkpoint:
     """What a run needs to go on.
 
-    Attributes
-    ----------
-    run_id : str
-        Name of the run.
-    scene : dict
-        The scene as plain data.
-    model : str
-        Fingerprint of the scene.
-    options : dict
-        `RunOptions` as plain data.
-    instruction_set : str
-        Kernel variant that was in use.
-    build : str
-        Digest of the compiled core that was in use.
-    motion : str
-        Digest of the prescribed motion of the ring.
-    start, end : float
-        Where the run starts and ends (s).
-    time : float
-        Time of the state (s).
-    done : int
-        Records that the run had made by then.
-    statistics : dict of str to float
-        What the integrator had done by then.
-    counters : dict of str to int
-        Evaluations by then.
-    stepping_s : float
-        Wall time of stepping by then (s).
-    state : ndarray, shape (n_state,)
-        The state vector.
-    peaks : ndarray
-        Peaks so far, as the core saves them; empty if the run keeps none.
-    warnings : list of str
-        What the watch over the run has found by then.
+    The scene or assembly and the options are plain data; `model`, `build` and `motion` are digests of the scene, the compiled core
+    and the prescribed motion of the rings. The run goes from `start` to `end` (s). At `time` (s) it had made `done` records, in a
+    wall time of stepping of `stepping_s` (s); what the integrator and the effects had done, and what the watch had found, is that
+    of by then, and so is the state, shape (n_state,), and the peaks, as the core saves them, empty if the run keeps none.
     """
 
     run_id: str
@@ -193,6 +163,12 @@ def previous_path(path: Path) -> Path:
     return path.with_name(path.name + ".previous")
 
 
+def _both(output: str | os.PathLike[str]) -> tuple[Path, Path]:
+    """The two checkpoint files of a run, the newest one first."""
+    newest = checkpoint_path(output)
+    return newest, previous_path(newest)
+
+
 def write(path: Path, checkpoint: Checkpoint) -> None:
     """Write a checkpoint; the one that was there becomes the previous one. Killed at any instant, one of them stays whole. A
     FileError, which leaves those that were there, if it cannot be written, or that of another run lies there.
@@ -240,8 +216,7 @@ def check_free(output: Path, replaced: str | None, *, overwrite: bool) -> None:
     """See that a new run with a schedule may write its checkpoints beside its result file; a FileError if a file lies there
     that must not be replaced. Those of the run whose result it replaces may be, and with `overwrite` those of any run.
     """
-    path = checkpoint_path(output)
-    for place in (path, previous_path(path)):
+    for place in _both(output):
         if not os.path.lexists(place):
             continue
         regular = place.is_file() and not place.is_symlink()
@@ -275,16 +250,14 @@ def _sync_folder(folder: Path) -> None:
 
 def remove(output: str | os.PathLike[str], run_id: str) -> None:
     """Remove the checkpoints of a run; those of others, and files that do not say whose they are, stay."""
-    path = checkpoint_path(output)
-    for place in (path, previous_path(path)):
+    for place in _both(output):
         if run_id_of(place) == run_id:
             place.unlink(missing_ok=True)
 
 
 def clear(output: Path) -> None:
     """Remove every checkpoint that `check_free` has let pass."""
-    path = checkpoint_path(output)
-    for place in (path, previous_path(path)):
+    for place in _both(output):
         place.unlink(missing_ok=True)
 
 
@@ -310,9 +283,8 @@ def read_last_good(output: str | os.PathLike[str], tell: Callable[[str], None]) 
     """The newest checkpoint of a run that can be used, beside its result file. `tell` is told, in a sentence, if that is not
     the newest one. If there is none, a FileError says why of each.
     """
-    newest = checkpoint_path(output)
     troubles: list[str] = []
-    for path in (newest, previous_path(newest)):
+    for path in _both(output):
         try:
             found = read(path)
         except FileError as error:
@@ -321,8 +293,9 @@ def read_last_good(output: str | os.PathLike[str], tell: Callable[[str], None]) 
         if troubles:
             tell(f"{troubles[0]}; going on from the one before it, at t = {found.time:.9g} s")
         return found
-    if not newest.exists() and not previous_path(newest).exists():
-        raise FileError(f"{newest}: there is no such file: the run had no schedule of checkpoints, or is complete")
+    if not any(path.exists() for path in _both(output)):
+        why = "the run had no schedule of checkpoints, or is complete"
+        raise FileError(f"{checkpoint_path(output)}: there is no such file: {why}")
     raise FileError("; ".join(troubles))
 
 

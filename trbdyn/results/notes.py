@@ -1,16 +1,31 @@
-"""Whether a run stays within the loads and oils that its law of rolling resistance was made for, in words."""
+"""What a summary says beside its numbers: where a law is used that was not made for these loads and oils, why the torques of the
+rings differ, and how far a largest force would scatter.
+
+After a load that drops and comes back the largest pocket force is one draw among many: a drop lets the rollers leave their order,
+and where each of them is when the load comes back decides which hit is the hardest. How far other starts and other accuracies
+scatter is measured by ``benchmarks/load_drop.py``.
+"""
 
 from __future__ import annotations
 
+import json
+import math
+from functools import cache
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
-from trbdyn.model.motion import values_of
+from trbdyn.base.shipped import DATA
+from trbdyn.model.motion import History, values_of
 
 if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
     from trbdyn.results.result import Result
+
+RINGS_DIFFER: Final = 0.01
+"""Share by which the torques of the two rings may differ without a word."""
+DROP: Final = 0.5
+"""Share of its largest value below which a load has dropped."""
 
 
 class Range(NamedTuple):
@@ -85,3 +100,43 @@ def _tilted(scene: Scene) -> str:
         "rolling resistance acts on the loaded part of each contact only: with a tilted ring the torque is a lower bound where "
         "the gaps beside it are full of oil"
     )
+
+
+def torque_note(window: Result, inner: float, outer: float) -> str | None:
+    """Why the friction torques on shaft and outer ring (N m) differ, in a sentence; None if they agree."""
+    if abs(outer - inner) <= RINGS_DIFFER * max(abs(inner), abs(outer)):
+        return None
+    effects = window.scene.effects
+    if effects.films and effects.rolling_resistance and not effects.rolling_pressure_force:
+        return (
+            "rolling resistance acts without the film's pressure force on the roller, as in the paper, so moments on a roller "
+            "balance only if its raceways carry different torques; the standard effects have that force, and both rings agree"
+        )
+    return (
+        "rollers and cage speed up or slow down within the window, "
+        "or a moment acts that is neither on the shaft nor on the ring"
+    )
+
+
+@cache
+def drop_measured() -> dict[str, Any]:
+    """What was measured: `scatter`, the standard deviation of the logarithm of the peak over starts and accuracies; `text`."""
+    found: dict[str, Any] = json.loads((DATA / "accuracy.json").read_text(encoding="utf-8"))["load_drop"]
+    return found
+
+
+def drop_band(peak: float) -> tuple[float, float]:
+    """Between which forces (N) the peak of a run with another start or accuracy lies in 95 of 100 cases."""
+    factor = math.exp(1.96 * math.sqrt(2.0) * float(drop_measured()["scatter"]))  # both peaks are draws
+    return peak / factor, peak * factor
+
+
+def load_drops(window: Result) -> bool:
+    """Whether the axial or the radial load changes in time and falls, within the window, below a share of its largest value."""
+    scene, time = window.scene, window["time"]
+    for load in (scene.axial_load, scene.radial_load):
+        if isinstance(load, History):
+            values = np.abs(load.value(time))
+            if values.min() < DROP * values.max():
+                return True
+    return False
