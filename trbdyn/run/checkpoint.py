@@ -57,10 +57,10 @@ def digest_of(values: ArrayLike) -> str:
 class Checkpoint:
     """What a run needs to go on.
 
-    The scene or assembly and the options are plain data; `model`, `build` and `motion` are digests of the scene, the compiled core
-    and the prescribed motion of the rings. The run goes from `start` to `end` (s). At `time` (s) it had made `done` records, in a
-    wall time of stepping of `stepping_s` (s); what the integrator and the effects had done, and what the watch had found, is that
-    of by then, and so is the state, shape (n_state,), and the peaks, as the core saves them, empty if the run keeps none.
+    The scene or assembly and the options are plain data; `model`, `build` and `motion` are digests of the scene, the compiled
+    core and the prescribed motion of the rings. The run goes from `start` to `end` (s). At `time` (s) it had made `done` records,
+    in a wall time of stepping of `stepping_s` (s). What the integrator and the effects had done, and what the watch had found, is
+    that of by then, and so are the state, shape (n_state,), and the peaks, as the core saves them, empty if the run keeps none.
     """
 
     run_id: str

@@ -15,7 +15,7 @@ import numpy as np
 from trbdyn import _core
 from trbdyn.base.shipped import DATA
 from trbdyn.base.shown import Displayed, Shown
-from trbdyn.errors import InputError, StepError
+from trbdyn.errors import StepError
 from trbdyn.model.flatten import diameter_deviation
 from trbdyn.model.motion import History, values_of
 from trbdyn.run.keeping import interval
@@ -32,7 +32,7 @@ PART: Final = 0.5
 """Length of a part of the probe, in turns of the shaft."""
 LEAST_PARTS: Final = 8
 MOST_PARTS: Final = 32
-"""Parts of a probe: at least, unless it or the run is shorter, and at most."""
+"""Parts of a probe: at least, unless the run is shorter, and at most."""
 STEADY: Final = 0.15
 """Difference of the steps in the halves of a probe up to which the motion is taken to go on as it is."""
 MOST_STEPS: Final = 15_000
@@ -187,7 +187,6 @@ def estimate(
     revolutions: float | None = None,
     duration: float | None = None,
     save_every: float | None = None,
-    probe: float | None = None,
 ) -> Estimate:
     """Expected wall time and error of a run from the present state.
 
@@ -204,9 +203,6 @@ def estimate(
         How far to go, in turns of the shaft or s; one of both must be given.
     save_every : float, optional
         Time between records (s); by default that of `Simulation.run`.
-    probe : float, optional
-        Bearing time of the probe (s); by default until the motion goes on as it is, from `LEAST_PARTS` to `MOST_PARTS` half turns
-        of the shaft. Not more than the run, and it ends early after `MOST_STEPS` steps.
 
     Raises
     ------
@@ -215,14 +211,12 @@ def estimate(
     StepError
         If the probe fails.
     """
-    if probe is not None and not probe > 0.0:
-        raise InputError.of("probe", probe, "must be > 0 (s)")
     changes = {"revolutions": revolutions, "duration": duration}
     options = sim.options.replace(**changes if save_every is None else {**changes, "save_every": save_every})
     start = sim.time
     length = options.end_time(sim.subject, start) - start
     save_every = interval(length, sim.scene.turning_rpm) if save_every is None else save_every
-    rates = _probe(sim, length, save_every, probe)
+    rates = _probe(sim, length, save_every)
     records = max(math.ceil(length / save_every - 1e-9), 1) + 1
     found = _errors(sim)
     return Estimate(
@@ -249,21 +243,20 @@ class _Part:
     rhs_evaluations: float
 
 
-def _probe(sim: Simulation, length: float, save_every: float, given: float | None) -> dict[str, float]:
+def _probe(sim: Simulation, length: float, save_every: float) -> dict[str, float]:
     """Wall time, steps and evaluations per second of bearing time, with records and peaks as a run has them."""
     other = sim.copy()
-    span = length if given is None else min(given, length)
-    turn = 60.0 / max(_largest(sim.scene.turning_rpm), 60.0 / span)
-    part = span / LEAST_PARTS if given is not None else min(PART * turn, span / 2)
+    turn = 60.0 / max(_largest(sim.scene.turning_rpm), 60.0 / length)
+    part = min(PART * turn, length / 2)
     parts: list[_Part] = []
     try:
-        _part(other, min(WARM_UP, 0.25 * span), save_every, MOST_STEPS)
+        _part(other, min(WARM_UP, 0.25 * length), save_every, MOST_STEPS)
         other._core.begin_peaks(other.time)
-        end, left = other.time + span, float(MOST_STEPS)
+        end, left = other.time + length, float(MOST_STEPS)
         while other.time < end and left > 0:
             parts.append(_part(other, min(part, end - other.time), save_every, int(left)))
             left -= parts[-1].steps
-            if given is None and len(parts) >= LEAST_PARTS and (_steady(parts) or len(parts) >= MOST_PARTS):
+            if len(parts) >= LEAST_PARTS and (_steady(parts) or len(parts) >= MOST_PARTS):
                 break
     except _core.CoreStepError as error:
         raise StepError(f"the probe of the estimate failed: {error}", time=other.time) from None

@@ -18,7 +18,7 @@ from trbdyn.results.file_source import FileSource, names_in
 from trbdyn.results.result import Result
 from trbdyn.run import checkpoint
 from trbdyn.run.checkpoint import Checkpoint
-from trbdyn.run.keeping import groups_of, kept_by_default
+from trbdyn.run.keeping import interval
 from trbdyn.run.options import OF_ONE_RUN, RunOptions
 from trbdyn.run.running import Callback, Run, motions_digest, output_times
 from trbdyn.run.simulation import Simulation
@@ -83,14 +83,8 @@ def resume(
                 f"{checkpoint.checkpoint_path(output)}: the checkpoint belongs to another run than {output}"
             )
         sim, options = _revived(output, found, instruction_set, tell)
-        kept = kept_by_default(
-            found.end - found.start,
-            sim.scene.turning_rpm,
-            options.save_every,
-            options.save_groups,
-            optional=groups_of(one.scene for one in sim.bearings),
-        )
-        times = output_times(found.start, found.end, kept["save_every"])
+        every = options.save_every or interval(found.end - found.start, sim.scene.turning_rpm)
+        times = output_times(found.start, found.end, every)
         if found.done >= times.size:
             raise FileError(
                 f"{checkpoint.checkpoint_path(output)}: the checkpoint cannot be used: it has too many records"

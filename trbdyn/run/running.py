@@ -7,7 +7,7 @@ import math
 import os
 import time as clock
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
@@ -24,7 +24,7 @@ from trbdyn.results import fields as field_table
 from trbdyn.results import peaks as peak_table
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.file_format import RunInfo, reason
-from trbdyn.results.result import Result, load_bearing
+from trbdyn.results.result import Result
 from trbdyn.run import bias, checkpoint, keeping
 from trbdyn.run.checkpoint import Checkpoint
 from trbdyn.run.faults import check_apart, culprit
@@ -34,13 +34,10 @@ from trbdyn.run.process import has_a_spare_core, interrupts
 from trbdyn.run.until import Until, check_wanted
 from trbdyn.run.watch import Watch
 from trbdyn.statics.plausible import dented
-from trbdyn.statics.seat import Layout, SeatedBearing, Seating
+from trbdyn.statics.seat import Layout, SeatedBearing
 
 if TYPE_CHECKING:
-    from trbdyn.model.assembly import Assembly
-    from trbdyn.model.scene import Scene
     from trbdyn.results.file_source import FileSource
-    from trbdyn.results.hdf5_file import Part
     from trbdyn.results.result_file import ResultWriter
     from trbdyn.run.simulation import Simulation
 
@@ -148,6 +145,7 @@ class Run:
         goes on takes over the records that it has made from its older file.
         """
         from trbdyn.results.file_source import run_id_in
+        from trbdyn.results.hdf5_file import Part
         from trbdyn.results.result_file import ResultWriter
 
         sim, done = self.sim, self.done
@@ -156,9 +154,14 @@ class Run:
         if run_id is None and scheduled:
             checkpoint.check_free(output, replaced, overwrite=overwrite)
         first = done if older is None else older[0].first_record
+        parts = []
+        for one in self.bearings:
+            scene, layout = one.of.scene, [(name, at + one.part.start, shape) for name, at, shape in one.layout]
+            geometry = asdict(scene.bearing.geometry)
+            parts.append(Part(scene, layout, one.kept.fields, self._meta(one), geometry, one.of.name))
         self.writer = ResultWriter(
             output,
-            *map(self._in_file, self.bearings),
+            *parts,
             assembly=None if sim.assembly is None else sim.assembly.to_dict(),
             run_id=run_id,
             first_record=first,
@@ -184,14 +187,6 @@ class Run:
             sim._core.end_peaks()
             self.writer.close()
             raise error if isinstance(error, FileError) else FileError(f"{output}: {reason(error)}") from error
-
-    def _in_file(self, bearing: RunningBearing) -> Part:
-        from trbdyn.results.hdf5_file import Part
-
-        layout = [(name, at + bearing.part.start, shape) for name, at, shape in bearing.layout]
-        scene = bearing.of.scene
-        geometry = asdict(scene.bearing.geometry)
-        return Part(scene, layout, bearing.kept.fields, self._meta(bearing), geometry, bearing.of.name)
 
     def go(self, *, progress: bool) -> Result | AssemblyResult:
         sim = self.sim
@@ -291,9 +286,8 @@ class Run:
         """The records up to here."""
         if self.writer is None:
             return self._from_memory(bearing, final_time=self.sim._reached)
-        assert self.output is not None
         self.writer.flush()
-        return load_bearing(self.output, bearing.of.name)
+        return self._in_file(bearing)
 
     def _call_back(self) -> bool:
         """What the callback answers. It may look at the simulation, but not move it. A FileError in a process that it has
@@ -377,16 +371,16 @@ class Run:
             meta["assembly"] = {"bearing": bearing.of.name, "bearings": names, "seat": bearing.of.seat.numbers()}
         return meta
 
-    def _written(self, bearing: RunningBearing) -> Result:
+    def _in_file(self, bearing: RunningBearing) -> Result:
         """The result as it is in the file."""
-        from trbdyn.results.file_source import run_id_in
+        from trbdyn.results.file_source import FileSource
 
         assert self.output is not None
         assert self.writer is not None
-        result = load_bearing(self.output, bearing.of.name)
-        if run_id_in(self.output) != self.writer.run_id:
-            raise FileError(f"{self.output}: the result file was replaced by another program after the run had ended")
-        return result
+        source = FileSource(self.output, bearing.of.name)
+        if source.run_id != self.writer.run_id:
+            raise FileError(f"{self.output}: the result file was replaced by another program")
+        return Result(source, source.info)
 
     def _finish(self, success: bool, message: str) -> Result | AssemblyResult:
         sim = self.sim
@@ -404,17 +398,7 @@ class Run:
         how: dict[str, Any] = {
             "success": success,
             "message": message,
-            "stats": statistics_of(
-                sim.statistics,
-                sim.subject,
-                start=float(self.times[0]),
-                end=sim._reached,
-                began=self.began,
-                spent=self.spent,
-                steps_before=self.steps_before,
-                integrator=self.options.integrator,
-                instruction_set=sim.instruction_set,
-            ),
+            "stats": self._statistics(),
             "counters": sim.counters,
             "final_time": ended.time,
             "final_state": ended.vector if alone else None,
@@ -435,7 +419,7 @@ class Run:
             self.writer.finish(*endings)
             if success:
                 checkpoint.remove(self.output, self.writer.run_id)
-            results = [self._written(one) for one in self.bearings]
+            results = [self._in_file(one) for one in self.bearings]
         else:
             results = [self._from_memory(one, **how) for one, how in zip(self.bearings, endings, strict=True)]
         if alone:
@@ -443,6 +427,29 @@ class Run:
         return AssemblyResult(
             {one.of.name: result for one, result in zip(self.bearings, results, strict=True)}, sim.assembly
         )
+
+    def _statistics(self) -> dict[str, Any]:
+        """Solver statistics of the simulation, and the times of this run (s): of its bearing, by the clock, and of stepping
+        alone. Its turns are those of the subject's speed, NaN where a torque drives the shaft.
+        """
+        sim, start, end, spent = self.sim, float(self.times[0]), self.sim._reached, self.spent
+        counted, subject, length = sim.statistics, sim.subject, end - start
+        turned = abs(turns(subject.turning_rpm, start, end)) if subject.torque is None else math.nan
+        stats: dict[str, Any] = {
+            name: int(value) if float(value).is_integer() and abs(value) < 2**53 else value
+            for name, value in counted.items()
+        }
+        return stats | {
+            "wall_s": clock.perf_counter() - self.began,
+            "stepping_s": spent,
+            "bearing_time_s": length,
+            "mean_step_s": length / steps if (steps := counted["steps"] - self.steps_before) > 0.0 else math.nan,
+            "revolutions": turned,
+            "wall_s_per_revolution": spent / turned if turned > 0.0 else math.nan,
+            "real_time_factor": length / spent if spent > 0.0 else math.nan,
+            "integrator": self.options.integrator,
+            "instruction_set": sim.instruction_set,
+        }
 
     def _from_memory(self, bearing: RunningBearing, **how: Any) -> Result:
         scene = bearing.of.scene
@@ -470,41 +477,6 @@ def _hand_over(result: Result | AssemblyResult, error: BaseException) -> None:
         error.add_note(
             f"The run ended by this; its {result.time.size} records so far are in the error's attribute 'result'."
         )
-
-
-def statistics_of(
-    counted: Mapping[str, float],
-    subject: Scene | Assembly | Seating,
-    *,
-    start: float,
-    end: float,
-    began: float,
-    spent: float,
-    steps_before: float,
-    integrator: str,
-    instruction_set: str,
-) -> dict[str, Any]:
-    """Solver statistics of a whole simulation, and of one of its runs from `start` to `end` of bearing time (s): its wall time
-    since it `began` by the clock, the time that the core took of it (`spent`, s), and its turns, counted by the subject's
-    speed, NaN where a torque drives the shaft.
-    """
-    turned = abs(turns(subject.turning_rpm, start, end)) if subject.torque is None else math.nan
-    length = end - start
-    stats: dict[str, Any] = {
-        name: int(value) if float(value).is_integer() and abs(value) < 2**53 else value
-        for name, value in counted.items()
-    }
-    return stats | {
-        "wall_s": clock.perf_counter() - began,
-        "stepping_s": spent,
-        "bearing_time_s": length,
-        "mean_step_s": length / steps if (steps := counted["steps"] - steps_before) > 0.0 else math.nan,
-        "revolutions": turned,
-        "wall_s_per_revolution": spent / turned if turned > 0.0 else math.nan,
-        "real_time_factor": length / spent if spent > 0.0 else math.nan,
-        "integrator": integrator,
-        "instruction_set": instruction_set,
-    }
 
 
 def progress_bar(times: Array, *, shown: bool) -> Any:
