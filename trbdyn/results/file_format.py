@@ -1,36 +1,12 @@
-"""Result files: HDF5, written while a run goes on, read field by field.
+"""What a result file holds: HDF5, written while a run goes on, read field by field (docs/file_format.md has the schema).
 
-Schema ``trbdyn-result``, version 2:
+A file is data: nothing in it is executed, and links or storage that lead out of the file are refused. `trbdyn.load` reads the
+JSON texts in ``/run`` and neither attributes nor labels of axes, which are for other programs: HDF5 has no checksum for texts of
+variable length.
 
-- ``/NAME``: one dataset a recorded quantity, time first, with the attributes ``units``, ``long_name`` and ``group``. Its
-  dimensions are HDF5 dimension scales with coordinates (``/time``, ``/roller``, ``/slot``, ``/xyz``, ``/xy``, ``/wxyz``), as
-  netCDF has them, so that xarray opens the file. The groups of `SINGLE` are float32, all else is float64
-  with as many digits as `DIGITS` says
-- ``/run/head``: everything else that is known before the run, as JSON: schema, versions, name of the run, the fields in the
-  order of the record, derived geometry, settings, and the whole scene
-- ``/run/committed``: number of records that count, number of bytes of ``/run/ending``, and 1
-- ``/run/ending``: bytes of a JSON text with ``success``, ``message``, ``stats``, ``counters``, ``warnings`` and
-  ``final_time``
-- ``/run/final_state``: the state vector at ``final_time``
-- ``/run/peaks``: the peaks of the whole run, one field after the other
-- attributes of the root, as text and numbers: for other programs; `trbdyn.load` reads the head
-
-The file of an assembly has a group for each bearing, named as the bearing, that holds all this, and ``/assembly``: what the
-bearings sit on, as JSON.
-
-All of ``/run`` but the head is empty until the run has ended. A file is data: nothing in it is executed, and links or storage
-that lead out of the file are refused.
-
-Every dataset carries a Fletcher32 checksum for each chunk, in which a zlib stream has a checksum of its own, and HDF5 keeps
-one for each piece of its metadata; it has none for texts of variable length. `trbdyn.load` therefore reads neither attributes
-nor labels.
-
-A file is closed while records wait in memory: other programs can read it then. To add records it is opened in HDF5's SWMR
-mode (single writer, multiple readers), which writes in an order that leaves the structure of the file sound at every instant;
-the number of records that count is written last. A run that is killed in this moment, some hundredths of a second long,
-leaves a file with HDF5's mark of a writer: programs open it in SWMR mode (``h5py.File(path, "r", swmr=True)``), and so does
-`trbdyn.load`. A run that is resumed copies the records before its checkpoint into a new file, which takes the place of the
-old one.
+A file is closed while records wait in memory. To add records it is opened in HDF5's SWMR mode (single writer, multiple readers),
+which writes in an order that leaves the structure of the file sound at every instant; the number of records that count is written
+last. A run that is killed in this moment leaves a file with HDF5's mark of a writer, which is read in SWMR mode.
 """
 
 from __future__ import annotations
@@ -62,9 +38,6 @@ BLOCK_ROWS = 512
 """Most rows of a chunk: what waits in memory is written in whole chunks where that is possible."""
 BLOCK_BYTES = 8 << 20
 """Most bytes of the chunks of all fields together."""
-
-PEAKS = "peaks"
-"""The group of fields that are peaks of each record's interval."""
 
 SINGLE = ("contacts", "pocket", "torque", "power", "peaks")
 """Groups that are kept as float32, to 7 digits. Motion and energies, from which the others can be found again, are not."""

@@ -21,12 +21,12 @@ from numpy.typing import NDArray
 from trbdyn.base.own_files import file_path
 from trbdyn.errors import FileError
 from trbdyn.results import hdf5_file
+from trbdyn.results import peaks as peak_table
 from trbdyn.results.fields import Field
 from trbdyn.results.file_format import (
     ASSEMBLY,
     ASSEMBLY_SCHEMA,
     ASSEMBLY_VERSION,
-    PEAKS,
     SCHEMA,
     SCHEMA_VERSION,
     RunInfo,
@@ -232,7 +232,7 @@ class FileSource:
     def _read_peaks(self, file: h5py.Group) -> dict[str, Array]:
         """Peaks of the whole run; none in files of runs that kept none."""
         row, found, at = np.asarray(read_text_or_state(_run(file), "peaks"), dtype=float), {}, 0
-        for name in (entry.name for entry in self.fields if entry.group == PEAKS) if row.size else ():
+        for name in (entry.name for entry in self.fields if entry.group == peak_table.GROUP) if row.size else ():
             shape = file[name].shape[1:]
             size = int(np.prod(shape))
             found[name] = row[at : at + size].reshape(shape)

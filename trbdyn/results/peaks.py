@@ -25,6 +25,7 @@ from trbdyn.results.fields import Field, Layout
 Array = NDArray[np.float64]
 
 GROUP = "peaks"
+"""The group of fields that are peaks of each record's interval."""
 
 
 @cache

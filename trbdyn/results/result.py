@@ -60,28 +60,6 @@ class Result(Derived, Displayed):
         What is known of the run besides.
     scene : Scene, optional
         The scene; by default it is made from ``info.scene`` when first asked for.
-
-    Attributes
-    ----------
-    success : bool
-        Whether the run reached its end.
-    message : str
-        How it ended, in a sentence.
-    stats : dict
-        Solver statistics: steps, rhs_evaluations, wall_s and others.
-    warnings : tuple of str
-        What the watch over the run found: energy that does not add up, steps so small that it makes no progress
-        (`trbdyn.run.watch`).
-    counters : dict of str to int
-        How often the core evaluated each effect; zero for effects that are off.
-    geometry : dict of str to float
-        Derived geometry of the bearing, SI.
-    final_time : float
-        Time of the final state, s.
-    final_state : ndarray or None, shape (n_state,)
-        The integrator's state at the end, from which a run can go on.
-    meta : dict
-        Versions, instruction set and settings of the run.
     """
 
     def __init__(self, source: Source, info: RunInfo, scene: Scene | None = None) -> None:
@@ -159,38 +137,49 @@ class Result(Derived, Displayed):
 
     @property
     def success(self) -> bool:
+        """Whether the run reached its end."""
         return self._info.success
 
     @property
     def message(self) -> str:
+        """How it ended, in a sentence."""
         return self._info.message
 
     @property
     def stats(self) -> dict[str, Any]:
+        """Solver statistics: steps, rhs_evaluations, wall_s and others."""
         return self._info.stats
 
     @property
     def counters(self) -> dict[str, int]:
+        """How often the core evaluated each effect; zero for effects that are off."""
         return self._info.counters
 
     @property
     def warnings(self) -> tuple[str, ...]:
+        """What the watch over the run found (`trbdyn.run.watch`): energy that does not add up, steps so small that it makes no
+        progress.
+        """
         return self._info.warnings
 
     @property
     def geometry(self) -> dict[str, float]:
+        """Derived geometry of the bearing, SI."""
         return self._info.geometry
 
     @property
     def final_time(self) -> float:
+        """Time of the final state, s."""
         return self._info.final_time
 
     @property
     def final_state(self) -> Array | None:
+        """The integrator's state at the end, from which a run can go on, shape (n_state,), or None."""
         return self._info.final_state
 
     @property
     def meta(self) -> dict[str, Any]:
+        """Versions, instruction set and settings of the run."""
         return self._info.meta
 
     @property

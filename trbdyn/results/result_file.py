@@ -23,8 +23,9 @@ from trbdyn.base.own_files import copy_content, create_draft, exists_already, ou
 from trbdyn.base.second_thread import SecondThread
 from trbdyn.errors import FileError
 from trbdyn.results import hdf5_file
+from trbdyn.results import peaks as peak_table
 from trbdyn.results.fields import Field
-from trbdyn.results.file_format import PEAKS, block_rows, json_text, reason
+from trbdyn.results.file_format import block_rows, json_text, reason
 from trbdyn.results.file_source import FileSource
 from trbdyn.results.hdf5_file import Part
 from trbdyn.results.waiting_rows import WaitingRows
@@ -329,7 +330,7 @@ def _ending(
     ending: dict[str, NDArray[Any]] = {"ending": np.frombuffer(json_text(how).encode(), dtype="u1")}
     if final_state is not None:
         ending["final_state"] = np.asarray(final_state, dtype=float)
-    kept = [np.ravel(peaks[entry.name]) for entry in fields if entry.group == PEAKS] if peaks else []
+    kept = [np.ravel(peaks[entry.name]) for entry in fields if entry.group == peak_table.GROUP] if peaks else []
     if kept:
         ending["peaks"] = np.concatenate(kept, dtype=float)
     return ending
