@@ -45,6 +45,7 @@ LOAD_HEAVY = (
     "trbdyn.reporting.page",
     "trbdyn.results.export",
     "trbdyn.results.file_source",
+    "trbdyn.results.hdf5_file",
     "trbdyn.results.result",
     "trbdyn.results.result_file",
     "trbdyn.study.front",
