@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "bearing/losses.h"
 #include "bearing/pockets.h"
 #include "bearing/ribs.h"
@@ -193,31 +192,29 @@ static int losses_of(const trb_params *p)
   return last + 1;
 }
 
-static double *doubles(size_t count) { return trb_zeros(count, sizeof(double)); }
+static double *doubles(trb_model *m, size_t count) { return trb_memory_zeros(&m->memory, count, sizeof(double)); }
 
-static int allocate(trb_model *m)
+static void allocate(trb_model *m)
 {
-  const size_t lanes = (size_t)m->n_lanes, all = lanes * (size_t)m->n_rollers;
-  int          ok = 1;
-  ok &= (m->diameter_deviation = doubles((size_t)m->n_rollers)) != NULL;
-  ok &= (m->station = doubles(lanes)) != NULL;
-  ok &= (m->cell = doubles(lanes + 1)) != NULL;
-  ok &= (m->centre = doubles(all)) != NULL;
-  ok &= (m->sphere = doubles(all)) != NULL;
-  ok &= (m->end_spheres = calloc(2 * (size_t)m->n_rollers, sizeof *m->end_spheres)) != NULL;
-  ok &= (m->pocket_axes = calloc((size_t)m->n_rollers, sizeof *m->pocket_axes)) != NULL;
-  ok &= (m->pocket_origin = calloc((size_t)m->n_rollers, sizeof *m->pocket_origin)) != NULL;
-  ok &= (m->nominal_angle = calloc((size_t)m->n_rollers, sizeof *m->nominal_angle)) != NULL;
+  const size_t lanes = (size_t)m->n_lanes, rollers = (size_t)m->n_rollers;
+  m->diameter_deviation = doubles(m, rollers);
+  m->station = doubles(m, lanes);
+  m->cell = doubles(m, lanes + 1);
+  m->centre = doubles(m, lanes * rollers);
+  m->sphere = doubles(m, lanes * rollers);
+  m->end_spheres = trb_memory_zeros(&m->memory, 2 * rollers, sizeof *m->end_spheres);
+  m->pocket_axes = trb_memory_zeros(&m->memory, rollers, sizeof *m->pocket_axes);
+  m->pocket_origin = trb_memory_zeros(&m->memory, rollers, sizeof *m->pocket_origin);
+  m->nominal_angle = trb_memory_zeros(&m->memory, rollers, sizeof *m->nominal_angle);
   for (int race = 0; race < TRB_N_RACES; race++) {
     m->race[race].race = race;
     m->race[race].cone = &m->surfaces.race[race];
-    ok &= (m->race[race].weight = doubles(lanes)) != NULL;
-    ok &= (m->race[race].log_radius = doubles(lanes)) != NULL;
-    ok &= (m->race[race].radius = doubles(lanes)) != NULL;
-    ok &= (m->race[race].roller_share = doubles(lanes)) != NULL;
-    ok &= (m->race[race].drop = doubles(lanes)) != NULL;
+    m->race[race].weight = doubles(m, lanes);
+    m->race[race].log_radius = doubles(m, lanes);
+    m->race[race].radius = doubles(m, lanes);
+    m->race[race].roller_share = doubles(m, lanes);
+    m->race[race].drop = doubles(m, lanes);
   }
-  return ok;
 }
 
 static trb_status check_ring(const trb_params *p, trb_message *message)
@@ -300,7 +297,8 @@ static trb_status fill(trb_model *m, const double *deviation, const trb_face *fa
   m->n_rollers = (int)m->params.n_rollers;
   m->n_nodes = (int)m->params.n_slices;
   m->n_lanes = (m->n_nodes + TRB_LANE_PAD - 1) / TRB_LANE_PAD * TRB_LANE_PAD;
-  if (!allocate(m)) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for %d rollers of %d nodes", m->n_rollers, m->n_nodes);
+  allocate(m);
+  if (m->memory.lacks) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for %d rollers of %d nodes", m->n_rollers, m->n_nodes);
   for (int j = 0; j < m->n_rollers; j++) {
     if (!(fabs(deviation[j]) < 0.1 * m->params.roller_diameter))
       return trb_fail(message, TRB_ERR_INPUT, "diameter deviation of roller %d = %g m: must be within a tenth of the diameter", j,
@@ -357,7 +355,8 @@ trb_status trb_model_set_modes(trb_model *m, const double *rows, int n_modes, in
   if (n_modes != (int)m->params.cage_modes)
     return trb_fail(message, TRB_ERR_INPUT, "cage_modes = %g: %d modes are given", m->params.cage_modes, n_modes);
   if (n_modes <= 0) return TRB_OK;
-  const trb_status status = trb_modes_read(to, m->n_rollers * m->n_slots, m->first_face[m->n_rollers], rows, n_modes, n_columns, message);
+  const trb_status status =
+      trb_modes_read(to, &m->memory, m->n_rollers * m->n_slots, m->first_face[m->n_rollers], rows, n_modes, n_columns, message);
   if (status != TRB_OK) return status;
   for (int j = 0, leader = 0; j < m->n_rollers; j++)
     for (int f = m->first_face[j]; f < m->first_face[j + 1]; f++) {
@@ -373,33 +372,13 @@ trb_status trb_model_set_modes(trb_model *m, const double *rows, int n_modes, in
 
 trb_status trb_model_set_form(trb_model *m, const double *rows, int n_rows, int n_columns, trb_message *message)
 {
-  return trb_form_read(&m->form, m->n_rollers, m->n_nodes, rows, n_rows, n_columns, message);
+  return trb_form_read(&m->form, &m->memory, m->n_rollers, m->n_nodes, rows, n_rows, n_columns, message);
 }
 
 void trb_model_free(trb_model *model)
 {
   if (model == NULL) return;
-  for (int race = 0; race < TRB_N_RACES; race++) {
-    free(model->race[race].weight);
-    free(model->race[race].log_radius);
-    free(model->race[race].radius);
-    free(model->race[race].roller_share);
-    free(model->race[race].drop);
-  }
-  free(model->diameter_deviation);
-  free(model->station);
-  free(model->cell);
-  free(model->centre);
-  free(model->sphere);
-  free(model->end_spheres);
-  free(model->pocket_axes);
-  free(model->pocket_origin);
-  free(model->nominal_angle);
-  free(model->faces);
-  free(model->first_face);
-  free(model->planes);
-  trb_modes_free(&model->modes);
-  trb_form_free(&model->form);
+  trb_memory_free(&model->memory);
   free(model);
 }
 

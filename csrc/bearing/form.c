@@ -1,10 +1,8 @@
 #include "bearing/form.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "base/vec3.h"
 #include "laws/smooth.h"
 
@@ -56,13 +54,6 @@ trb_form_scale trb_form_scale_of(const trb_form *form, int race)
     else if (p->surface >= trb_form_of_roller(0, 0) && p->surface % 2 == race) least.roller = fmin(least.roller, p->scale);
   }
   return least;
-}
-
-void trb_form_free(trb_form *form)
-{
-  free(form->patches);
-  free(form->rows);
-  *form = (trb_form){0};
 }
 
 static trb_status check_row(int n_rollers, const double *rows, int i, int n_columns, trb_message *message)
@@ -117,7 +108,8 @@ static trb_status read_patch(trb_form *form, const double *rows, int first, int 
   return TRB_OK;
 }
 
-trb_status trb_form_read(trb_form *form, int n_rollers, int n_nodes, const double *rows, int n_rows, int n_columns, trb_message *message)
+trb_status trb_form_read(trb_form *form, trb_memory *memory, int n_rollers, int n_nodes, const double *rows, int n_rows, int n_columns,
+                         trb_message *message)
 {
   trb_status status = TRB_OK;
   int        n_patches = 0;
@@ -127,11 +119,10 @@ trb_status trb_form_read(trb_form *form, int n_rollers, int n_nodes, const doubl
   for (int i = 0; i < n_rows && status == TRB_OK; i++) status = check_row(n_rollers, rows, i, n_columns, message);
   if (status != TRB_OK) return status;
   for (int i = 0; i < n_rows; i += samples(rows, i, n_rows, n_columns)) n_patches++;
-  trb_form_free(form);
-  form->n_nodes = n_nodes;
-  form->patches = trb_zeros((size_t)n_patches, sizeof *form->patches);
-  form->rows = trb_zeros((size_t)n_rows * 2 * (size_t)n_nodes, sizeof *form->rows);
-  if (form->patches == NULL || form->rows == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the form of surfaces");
+  *form = (trb_form){.n_nodes = n_nodes};
+  form->patches = trb_memory_zeros(memory, (size_t)n_patches, sizeof *form->patches);
+  form->rows = trb_memory_zeros(memory, (size_t)n_rows * 2 * (size_t)n_nodes, sizeof *form->rows);
+  if (memory->lacks) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the form of surfaces");
   for (int i = 0; i < n_rows && status == TRB_OK;) {
     const int n = samples(rows, i, n_rows, n_columns);
     status = read_patch(form, rows, i, n, n_columns, message);

@@ -4,6 +4,7 @@
 #ifndef TRB_BEARING_FORM_H
 #define TRB_BEARING_FORM_H
 
+#include "base/memory.h"
 #include "base/status.h"
 
 /* What a sample of a patch is as a row of numbers: the number of the patch, ascending; the surface (TRB_FORM_SURFACE); the angle on it, equally
@@ -41,8 +42,8 @@ trb_form_scale trb_form_scale_of(const trb_form *form, int race);
 /* Whether a patch of a surface is nearer to an angle than a margin. */
 int trb_form_is_near(const trb_form *form, int surface, double angle, double margin);
 
-/* Rows of TRB_FORM_depth + 2 n_nodes numbers; none: all surfaces have their true form. */
-trb_status trb_form_read(trb_form *form, int n_rollers, int n_nodes, const double *rows, int n_rows, int n_columns, trb_message *message);
-void       trb_form_free(trb_form *form);
+/* Rows of TRB_FORM_depth + 2 n_nodes numbers; none: all surfaces have their true form. Arrays belong to the memory. */
+trb_status trb_form_read(trb_form *form, trb_memory *memory, int n_rollers, int n_nodes, const double *rows, int n_rows, int n_columns,
+                         trb_message *message);
 
 #endif

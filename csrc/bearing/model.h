@@ -5,6 +5,7 @@
 
 #include "base/status.h"
 #include "base/vec3.h"
+#include "base/memory.h"
 #include "bearing/form.h"
 #include "bearing/geometry.h"
 #include "bearing/modes.h"
@@ -146,6 +147,7 @@ typedef struct trb_model {
   trb_modes     modes;                         /* of an elastic cage */
   trb_form      form;                          /* of surfaces off their true form */
   int           n_losses;                      /* entries of the list of losses (bearing/losses.h) that have a quadrature */
+  trb_memory    memory;                        /* of all arrays */
 } trb_model;
 
 /* Whether rollers and raceways are cylinders. */

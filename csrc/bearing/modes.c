@@ -1,30 +1,19 @@
 #include "bearing/modes.h"
 
 #include <math.h>
-#include <stdlib.h>
-
-#include "base/memory.h"
 
 /* Coriolis forces below this share of the largest one are none. */
 #define TRB_NO_CORIOLIS 1e-9
 
-static double *doubles(size_t count) { return trb_zeros(count, sizeof(double)); }
-
-static int allocate(trb_modes *to, size_t n_faces)
+static void allocate(trb_modes *to, trb_memory *memory, size_t n_faces)
 {
   const size_t n = (size_t)to->n;
-  to->frequency = doubles(n);
-  to->damping = doubles(n);
-  to->mass = doubles(n);
-  to->per = doubles(n);
-  to->share = doubles(n);
-  to->yield = doubles(n);
-  to->coriolis = trb_zeros(n * n + 1, sizeof *to->coriolis);
-  to->first_coriolis = calloc(n + 1, sizeof *to->first_coriolis);
-  to->shapes = doubles(n_faces * n * TRB_SHAPE_ROOM + 1);
-  to->middle = trb_zeros(n_faces + 1, sizeof *to->middle);
-  return to->frequency != NULL && to->damping != NULL && to->mass != NULL && to->per != NULL && to->share != NULL && to->yield != NULL &&
-         to->coriolis != NULL && to->first_coriolis != NULL && to->shapes != NULL && to->middle != NULL;
+  double     **of_modes[] = {&to->frequency, &to->damping, &to->mass, &to->per, &to->share, &to->yield};
+  for (size_t i = 0; i < sizeof of_modes / sizeof of_modes[0]; i++) *of_modes[i] = trb_memory_zeros(memory, n, sizeof(double));
+  to->coriolis = trb_memory_zeros(memory, n * n, sizeof *to->coriolis);
+  to->first_coriolis = trb_memory_zeros(memory, n + 1, sizeof *to->first_coriolis);
+  to->shapes = trb_memory_zeros(memory, n_faces * n * TRB_SHAPE_ROOM, sizeof *to->shapes);
+  to->middle = trb_memory_zeros(memory, n_faces, sizeof *to->middle);
 }
 
 /* Modes of a ring of beams act on each other only where they have as many waves: the rest are rounding errors, and left out. */
@@ -56,7 +45,8 @@ static trb_status check_row(const double *row, int mode, int n_columns, trb_mess
   return TRB_OK;
 }
 
-trb_status trb_modes_read(trb_modes *to, int n_slots, int n_faces, const double *rows, int n_modes, int n_columns, trb_message *message)
+trb_status trb_modes_read(trb_modes *to, trb_memory *memory, int n_slots, int n_faces, const double *rows, int n_modes, int n_columns,
+                          trb_message *message)
 {
   const int shapes_end = TRB_MODE_shapes + TRB_SHAPE * n_slots, columns = shapes_end + n_modes;
   if (n_columns != columns) return trb_fail(message, TRB_ERR_INPUT, "modes: %d columns needed, %d given", columns, n_columns);
@@ -72,9 +62,9 @@ trb_status trb_modes_read(trb_modes *to, int n_slots, int n_faces, const double 
         return trb_fail(message, TRB_ERR_INPUT, "modes %d and %d of the cage: Coriolis forces = %g and %g kg: must be opposite", i, k, one,
                         other);
     }
-  trb_modes_free(to);
   to->n = n_modes;
-  if (!allocate(to, (size_t)n_faces)) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for %d modes of the cage", n_modes);
+  allocate(to, memory, (size_t)n_faces);
+  if (memory->lacks) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for %d modes of the cage", n_modes);
   for (int i = 0; i < n_modes; i++) {
     const double *row = rows + (size_t)i * (size_t)n_columns, w = row[TRB_MODE_frequency];
     to->frequency[i] = w;
@@ -86,19 +76,4 @@ trb_status trb_modes_read(trb_modes *to, int n_slots, int n_faces, const double 
   }
   set_coriolis(to, rows + shapes_end, n_columns);
   return TRB_OK;
-}
-
-void trb_modes_free(trb_modes *modes)
-{
-  free(modes->frequency);
-  free(modes->damping);
-  free(modes->mass);
-  free(modes->per);
-  free(modes->share);
-  free(modes->yield);
-  free(modes->coriolis);
-  free(modes->first_coriolis);
-  free(modes->shapes);
-  free(modes->middle);
-  *modes = (trb_modes){0};
 }

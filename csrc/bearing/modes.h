@@ -4,8 +4,7 @@
 #ifndef TRB_BEARING_MODES_H
 #define TRB_BEARING_MODES_H
 
-#include <stddef.h>
-
+#include "base/memory.h"
 #include "base/status.h"
 #include "base/vec3.h"
 
@@ -47,9 +46,9 @@ static inline const double *trb_shapes_of(const trb_modes *modes, int face)
   return modes->shapes + (size_t)face * (size_t)modes->n * TRB_SHAPE_ROOM;
 }
 
-/* Modes from rows of TRB_MODE_shapes + 6 n_slots + n_modes numbers, n_slots of all pockets together; shapes and middles of the faces are left
- * at zero. */
-trb_status trb_modes_read(trb_modes *modes, int n_slots, int n_faces, const double *rows, int n_modes, int n_columns, trb_message *message);
-void       trb_modes_free(trb_modes *modes);
+/* Modes from rows of TRB_MODE_shapes + 6 n_slots + n_modes numbers, n_slots of all pockets together, in arrays of a memory; shapes and
+ * middles of the faces are left at zero. */
+trb_status trb_modes_read(trb_modes *modes, trb_memory *memory, int n_slots, int n_faces, const double *rows, int n_modes, int n_columns,
+                          trb_message *message);
 
 #endif

@@ -122,11 +122,10 @@ trb_status trb_pockets_fill_faces(trb_model *m, const trb_face *faces, int n_fac
     if ((int)faces[i].slot[0] + 1 > m->n_slots) m->n_slots = (int)faces[i].slot[0] + 1;
     total += faces[i].pocket[0] < 0.0 ? (size_t)m->n_rollers : 1;
   }
-  m->faces = calloc(total + 1, sizeof *m->faces);
-  m->first_face = calloc((size_t)m->n_rollers + 1, sizeof *m->first_face);
-  m->planes = trb_zeros(total + 1, sizeof *m->planes);
-  if (m->faces == NULL || m->first_face == NULL || m->planes == NULL)
-    return trb_fail(message, TRB_ERR_MEMORY, "out of memory for %zu pocket faces", total);
+  m->faces = trb_memory_zeros(&m->memory, total, sizeof *m->faces);
+  m->first_face = trb_memory_zeros(&m->memory, (size_t)m->n_rollers + 1, sizeof *m->first_face);
+  m->planes = trb_memory_zeros(&m->memory, total, sizeof *m->planes);
+  if (m->memory.lacks) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for %zu pocket faces", total);
   int count = 0;
   for (int pocket = 0; pocket < m->n_rollers; pocket++) {
     m->first_face[pocket] = count;

@@ -12,12 +12,6 @@
 #include "bearing/model.h"
 #include "body/drive.h"
 
-typedef struct trb_coordinate {
-  const char   *name;
-  trb_tolerance tolerance; /* to which it is integrated */
-  const char   *text;
-} trb_coordinate;
-
 typedef struct trb_body trb_body;
 
 /* Sums over modes; they are compiled for each instruction set (contact/kernels.h). Shapes are those of a face. */

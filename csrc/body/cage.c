@@ -4,7 +4,7 @@
 
 static const trb_vec3 none = {0, 0, 0}, first = {1, 0, 0}, second = {0, 1, 0}, third = {0, 0, 1};
 
-static void cage_pose(const trb_model *m, const trb_body *body, const trb_drive *drive, const double *y, trb_rigid_pose *pose)
+void trb_cage_pose(const trb_model *m, const trb_body *body, const trb_drive *drive, const double *y, trb_rigid_pose *pose)
 {
   (void)body;
   const trb_angle turn = trb_angle_of(y[TRB_CAGE_psi]);
@@ -18,8 +18,8 @@ static void cage_pose(const trb_model *m, const trb_body *body, const trb_drive 
   pose->omega = trb_from_frame(&pose->frame, pose->omega_frame);
 }
 
-static void cage_rates(const trb_model *m, const trb_body *body, const trb_drive *drive, const trb_rigid_pose *c, const double *y,
-                       const trb_wrench *load, double *rates)
+void trb_cage_rates(const trb_model *m, const trb_body *body, const trb_drive *drive, const trb_rigid_pose *c, const double *y,
+                    const trb_wrench *load, double *rates)
 {
   (void)body;
   memset(rates, 0, TRB_CAGE_SIZE * sizeof *rates);
@@ -43,7 +43,7 @@ static void cage_rates(const trb_model *m, const trb_body *body, const trb_drive
   rates[TRB_CAGE_omega_t] = turn.spin.y;
 }
 
-static trb_rigid cage_motion(const trb_rigid_pose *cage, int coordinate)
+trb_rigid trb_cage_motion(const trb_rigid_pose *cage, int coordinate)
 {
   const trb_frame *f = &cage->frame;
   switch (coordinate) {
@@ -61,29 +61,67 @@ static trb_rigid cage_motion(const trb_rigid_pose *cage, int coordinate)
   }
 }
 
-static double cage_mass(const trb_model *m, const trb_body *body)
+double trb_cage_mass(const trb_model *m, const trb_body *body)
 {
   (void)body;
   return m->params.with_cage > 0.0 ? m->params.cage_mass : 0.0;
 }
 
-static double cage_kinetic(const trb_model *m, const trb_body *body, const trb_rigid_pose *c)
+double trb_cage_kinetic(const trb_model *m, const trb_body *body, const trb_rigid_pose *c)
 {
   (void)body;
   if (m->params.with_cage <= 0.0) return 0.0;
   return trb_kinetic(m->params.cage_mass, m->params.cage_inertia_axial, m->params.cage_inertia_transverse, c->v, c->omega_frame);
 }
 
-#define COORDINATE(name, kind, text) {#name, TRB_TOL_##kind, text},
-static const trb_coordinate coordinates[TRB_CAGE_SIZE] = {TRB_CAGE_STATE(COORDINATE)};
-#undef COORDINATE
+static const trb_coordinate coordinates[TRB_CAGE_SIZE] = {TRB_CAGE_STATE(TRB_COORDINATE)};
 
 const trb_body_kind trb_body_cage = {.name = "rigid cage",
                                      .size = TRB_CAGE_SIZE,
                                      .coordinates = coordinates,
                                      .skew = TRB_CAGE_skew,
-                                     .pose = cage_pose,
-                                     .rates = cage_rates,
-                                     .motion = cage_motion,
-                                     .mass = cage_mass,
-                                     .kinetic = cage_kinetic};
+                                     .pose = trb_cage_pose,
+                                     .rates = trb_cage_rates,
+                                     .motion = trb_cage_motion,
+                                     .mass = trb_cage_mass,
+                                     .kinetic = trb_cage_kinetic};
+
+/* A spacer without its rollers; what they add is in motion/spacer.c. */
+static void spacer_rates(const trb_model *m, const trb_body *body, const trb_drive *drive, const trb_rigid_pose *pose, const double *y,
+                         const trb_wrench *load, double *rates)
+{
+  (void)body;
+  (void)y;
+  memset(rates, 0, TRB_CAGE_SIZE * sizeof *rates);
+  rates[TRB_CAGE_psi] = pose->omega_frame.z - drive->frame_speed;
+  rates[TRB_CAGE_omega_a] = load->moment.z / m->params.cage_inertia_axial - drive->frame_rate;
+}
+
+/* What guides it carries its weight. */
+static double spacer_mass(const trb_model *m, const trb_body *body)
+{
+  (void)m;
+  (void)body;
+  return 0.0;
+}
+
+static double spacer_kinetic(const trb_model *m, const trb_body *body, const trb_rigid_pose *pose)
+{
+  (void)body;
+  return 0.5 * m->params.cage_inertia_axial * pose->omega_frame.z * pose->omega_frame.z;
+}
+
+static double spacer_inertia(const trb_model *m) { return m->params.cage_inertia_axial; }
+
+const trb_body_kind trb_body_spacer = {.name = "spacer",
+                                       .size = TRB_CAGE_SIZE,
+                                       .coordinates = coordinates,
+                                       .skew = -1,
+                                       .pose = trb_cage_pose,
+                                       .rates = spacer_rates,
+                                       .motion = trb_cage_motion,
+                                       .mass = spacer_mass,
+                                       .kinetic = spacer_kinetic,
+                                       .spacing = spacer_inertia,
+                                       .turn = TRB_CAGE_psi,
+                                       .turning = TRB_CAGE_omega_a};

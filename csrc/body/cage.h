@@ -27,6 +27,16 @@ enum {
       TRB_CAGE_SIZE
 };
 
-extern const trb_body_kind trb_body_cage;
+/* The spacer takes the place of a cage: it holds all rollers at even spacing on one orbit (motion/spacer.h), and has no play, no friction and
+ * no displacement. Of its coordinates only the turn moves. */
+extern const trb_body_kind trb_body_cage, trb_body_spacer;
+
+/* What a cage that deforms has of a rigid one. */
+void      trb_cage_pose(const trb_model *m, const trb_body *body, const trb_drive *drive, const double *y, trb_rigid_pose *pose);
+void      trb_cage_rates(const trb_model *m, const trb_body *body, const trb_drive *drive, const trb_rigid_pose *cage, const double *y,
+                         const trb_wrench *load, double *rates);
+trb_rigid trb_cage_motion(const trb_rigid_pose *cage, int coordinate);
+double    trb_cage_mass(const trb_model *m, const trb_body *body);
+double    trb_cage_kinetic(const trb_model *m, const trb_body *body, const trb_rigid_pose *cage);
 
 #endif

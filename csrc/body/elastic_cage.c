@@ -12,7 +12,7 @@ static int amplitude_of(const trb_body *body, int mode, double per[2])
 static void pose_of(const trb_model *m, const trb_body *body, const trb_drive *drive, const double *y, trb_rigid_pose *pose)
 {
   const trb_modes *modes = body->modes;
-  trb_body_cage.pose(m, body, drive, y, pose);
+  trb_cage_pose(m, body, drive, y, pose);
   pose->moving = pose->stored = pose->lost = 0.0;
   for (int i = 0; i < modes->n; i++) {
     const double per = modes->share[i], stretch = per * y[place_of(i)], rate = per * y[place_of(i) + 1];
@@ -43,7 +43,7 @@ static void rates_of(const trb_model *m, const trb_body *body, const trb_drive *
                      const trb_wrench *load, double *rates)
 {
   const trb_modes *modes = body->modes;
-  trb_body_cage.rates(m, body, drive, c, y, load, rates);
+  trb_cage_rates(m, body, drive, c, y, load, rates);
   for (int i = 0; i < modes->n; i++) {
     const int at = place_of(i);
     rates[at] = modes->frequency[i] * y[at + 1];
@@ -82,25 +82,16 @@ static void deform(const trb_body *body, const double *y, trb_deformed *deformed
 /* Of the mean axes. */
 static trb_rigid motion_of(const trb_rigid_pose *pose, int coordinate)
 {
-  if (coordinate < TRB_CAGE_SIZE) return trb_body_cage.motion(pose, coordinate);
+  if (coordinate < TRB_CAGE_SIZE) return trb_cage_motion(pose, coordinate);
   return (trb_rigid){{0, 0, 0}, {0, 0, 0}};
 }
 
-static double mass_of(const trb_model *m, const trb_body *body) { return trb_body_cage.mass(m, body); }
-
-static double kinetic_of(const trb_model *m, const trb_body *body, const trb_rigid_pose *pose)
-{
-  return trb_body_cage.kinetic(m, body, pose);
-}
-
-#define RIGID(name, kind, text) {#name, TRB_TOL_##kind, text},
 #define MODE(number) \
   {"q" #number, TRB_TOL_VELOCITY, "amplitude of mode " #number " times its angular frequency or 17000 rad/s, the larger one, m/s"}, \
       {"p" #number, TRB_TOL_VELOCITY, "rate of its amplitude times the same over its angular frequency, m/s"},
 #define TEN(t) MODE(t##0) MODE(t##1) MODE(t##2) MODE(t##3) MODE(t##4) MODE(t##5) MODE(t##6) MODE(t##7) MODE(t##8) MODE(t##9)
-static const trb_coordinate coordinates[TRB_CAGE_SIZE + 2 * TRB_MOST_MODES] = {TRB_CAGE_STATE(RIGID) TEN() TEN(1) TEN(2) TEN(3) TEN(4)
-                                                                                   TEN(5) TEN(6) TEN(7) TEN(8) TEN(9)};
-#undef RIGID
+static const trb_coordinate coordinates[TRB_CAGE_SIZE + 2 * TRB_MOST_MODES] = {TRB_CAGE_STATE(TRB_COORDINATE) TEN() TEN(1) TEN(2) TEN(3)
+                                                                                   TEN(4) TEN(5) TEN(6) TEN(7) TEN(8) TEN(9)};
 #undef MODE
 #undef TEN
 
@@ -110,8 +101,8 @@ const trb_body_kind trb_body_elastic_cage = {.name = "elastic cage",
                                              .pose = pose_of,
                                              .rates = rates_of,
                                              .motion = motion_of,
-                                             .mass = mass_of,
-                                             .kinetic = kinetic_of,
+                                             .mass = trb_cage_mass,
+                                             .kinetic = trb_cage_kinetic,
                                              .deform = deform,
                                              .pushed = pushed,
                                              .amplitude = amplitude_of,

@@ -209,9 +209,7 @@ static void place_of(const trb_model *m, const trb_drive *drive, trb_ring_pose *
 
 static void place_outer(const trb_model *m, const trb_drive *drive, trb_ring_pose *pose) { trb_ring_turning.place(m, drive, pose); }
 
-#define COORDINATE(name, kind, text) {#name, TRB_TOL_##kind, text},
-static const trb_coordinate coordinates[TRB_FREE_RING_SIZE] = {TRB_FREE_RING_STATE(COORDINATE)};
-#undef COORDINATE
+static const trb_coordinate coordinates[TRB_FREE_RING_SIZE] = {TRB_FREE_RING_STATE(TRB_COORDINATE)};
 
 #define RING(text, where) \
   {.name = text, \

@@ -14,6 +14,15 @@ typedef enum trb_tolerance {
   TRB_N_TOLERANCES
 } trb_tolerance;
 
+typedef struct trb_coordinate {
+  const char   *name;
+  trb_tolerance tolerance; /* to which it is integrated */
+  const char   *text;
+} trb_coordinate;
+
+/* A row of a list X(name, unit kind, text) as a coordinate. */
+#define TRB_COORDINATE(name, kind, text) {#name, TRB_TOL_##kind, text},
+
 /* Force, and moment about the body's reference point. */
 typedef struct trb_wrench {
   trb_vec3 force;  /* N */

@@ -1,5 +1,7 @@
 #include "body/roller.h"
 
+const trb_coordinate trb_roller_coordinates[TRB_ROLLER_SIZE] = {TRB_ROLLER_STATE(TRB_COORDINATE)};
+
 static const trb_vec3 none = {0, 0, 0}, first = {1, 0, 0}, second = {0, 1, 0}, third = {0, 0, 1};
 
 void trb_roller_pose_unpack_centre(const trb_model *m, const trb_drive *drive, int roller, const double *y, trb_roller_pose *pose)

@@ -26,6 +26,8 @@ enum {
       TRB_ROLLER_SIZE
 };
 
+extern const trb_coordinate trb_roller_coordinates[TRB_ROLLER_SIZE];
+
 /* A roller, in its own cylindrical frame (e_r, e_t, e_z) at its orbit angle; origin: the apex. */
 typedef struct trb_roller_pose {
   double    radius;       /* of the centre of mass from the bearing axis, m */

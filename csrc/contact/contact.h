@@ -7,6 +7,7 @@
 #ifndef TRB_CONTACT_CONTACT_H
 #define TRB_CONTACT_CONTACT_H
 
+#include "base/memory.h"
 #include "bearing/losses.h"
 #include "bearing/model.h"
 #include "body/body.h"
@@ -155,6 +156,7 @@ typedef struct trb_detail {
   double         *pocket_interference; /* [roller][slot], largest; negative: smallest gap found, m; or NULL: forces alone */
   trb_land_detail land;
   int             n_contacts; /* such pairs */
+  trb_memory      memory;     /* of all arrays */
 } trb_detail;
 
 /* Slopes of the wrench on a roller, about its centre of mass, with its motion relative to the other body: one column for a translation

@@ -2,7 +2,7 @@
 #ifndef TRB_CONTACT_FRICTION_H
 #define TRB_CONTACT_FRICTION_H
 
-#include "bearing/model.h"
+#include "contact/contact.h"
 #include "laws/traction.h"
 
 /* A point of contact between a roller and another body, both in the same coordinates. */
@@ -40,6 +40,27 @@ static inline double trb_sliding_coefficient(const trb_model *m, double speed)
 
 /* Normal damping, never pulling (docs/theory/contacts.md#normal-damping). */
 static inline double trb_damped(double load, double coefficient, double rate) { return load * trb_max(1.0 + coefficient * rate, 0.0); }
+
+/* What presses at a point and drags there. */
+typedef struct trb_push {
+  double   load;  /* with damping, N */
+  double   mu;    /* friction coefficient */
+  double   drag;  /* friction over sliding speed, N s/m */
+  trb_vec3 force; /* on the roller, N */
+} trb_push;
+
+/* elastic: load without damping; damping: its coefficient; factor: of the friction coefficient; lost: powers, to which those of sliding and of
+ * damping are added. */
+static inline trb_push trb_push_at(const trb_model *m, const trb_touch *touch, trb_vec3 normal, double elastic, double damping,
+                                   double factor, double *lost)
+{
+  const double load = trb_damped(elastic, damping, touch->rate),
+               mu = m->pocket_friction ? factor * trb_sliding_coefficient(m, touch->speed) : 0.0;
+  const double drag = load * mu / touch->speed;
+  lost[TRB_BY_SLIDING] += drag * trb_dot(touch->sliding, touch->sliding);
+  lost[TRB_BY_DAMPING] += (load - elastic) * touch->rate;
+  return (trb_push){load, mu, drag, trb_axpy(trb_scale(-load, normal), -drag, touch->sliding)};
+}
 
 /* Its coefficient in pockets and at the land. */
 static inline double trb_cage_damping(const trb_model *m) { return m->params.damping > 0.0 ? m->params.damping_cage : 0.0; }

@@ -27,19 +27,17 @@ static void edge_on_end(const trb_model *m, const trb_roller_pose *r, const trb_
   const trb_vec3  normal = trb_scale(-1.0, a);
   const trb_touch touch =
       trb_touching(trb_add(r->v, trb_cross(r->omega, arm)), trb_add(ring->velocity, trb_cross(ring->omega, ring_arm)), normal);
-  const double   elastic = 0.5 * m->params.end_stiffness * d * sqrt(d), q = trb_damped(elastic, trb_contact_damping(m, d), touch.rate);
-  const double   mu = m->pocket_friction ? trb_sliding_coefficient(m, touch.speed) : 0.0, drag = q * mu / touch.speed;
-  const trb_vec3 force = trb_axpy(trb_scale(-q, normal), -drag, touch.sliding), torque = trb_cross(ring_arm, force);
-  const trb_load load = {
-      .on_a = {force, trb_cross(arm, force)},
-      .on_b = {trb_scale(-1.0, force), trb_scale(-1.0, torque)},
-      .elastic = 0.4 * elastic * d,
-      .lost = {[TRB_BY_SLIDING] = drag * trb_dot(touch.sliding, touch.sliding), [TRB_BY_DAMPING] = (q - elastic) * touch.rate},
-      .torque = {[TRB_BY_SLIDING] = -trb_dot(torque, ring->axis)}};
+  const double   elastic = 0.5 * m->params.end_stiffness * d * sqrt(d);
+  trb_load       load = {.elastic = 0.4 * elastic * d};
+  const trb_push push = trb_push_at(m, &touch, normal, elastic, trb_contact_damping(m, d), 1.0, load.lost);
+  const trb_vec3 torque = trb_cross(ring_arm, push.force);
+  load.on_a = (trb_wrench){push.force, trb_cross(arm, push.force)};
+  load.on_b = (trb_wrench){trb_scale(-1.0, push.force), trb_scale(-1.0, torque)};
+  load.torque[TRB_BY_SLIDING] = -trb_dot(torque, ring->axis);
   trb_add_load(pair, &load, to);
-  c->load += q;
-  c->friction += q * mu;
-  c->friction_coefficient = mu;
+  c->load += push.load;
+  c->friction += push.load * push.mu;
+  c->friction_coefficient = push.mu;
   c->sliding_speed = touch.speed;
 }
 

@@ -87,14 +87,11 @@ static void contact_on_strip(meeting *w, double station, double width)
   const trb_vec3  normal = trb_scale(1.0 / s.size, s.apart), at = trb_land_nearest(&s, normal, w->radius, w->inside);
   const trb_touch touch = trb_touching(cage_velocity(w, at), ring_velocity(w, at), normal);
   const double    elastic = m->land_palmgren * width * pow(d, TRB_PALMGREN_EXPONENT);
-  const double    q = trb_damped(elastic, trb_cage_damping(m), touch.rate);
-  const double    mu = m->pocket_friction ? trb_sliding_coefficient(m, touch.speed) : 0.0, drag = q * mu / touch.speed;
-  act(w, at, trb_axpy(trb_scale(-q, normal), -drag, touch.sliding), 0.0, TRB_BY_SLIDING);
+  const trb_push  push = trb_push_at(m, &touch, normal, elastic, trb_cage_damping(m), 1.0, w->load->lost);
+  act(w, at, push.force, 0.0, TRB_BY_SLIDING);
   w->load->elastic += TRB_PALMGREN_ENERGY * elastic * d;
-  w->load->lost[TRB_BY_SLIDING] += drag * trb_dot(touch.sliding, touch.sliding);
-  w->load->lost[TRB_BY_DAMPING] += (q - elastic) * touch.rate;
-  w->contact = trb_axpy(w->contact, -q, normal);
-  w->seen.friction += q * mu;
+  w->contact = trb_axpy(w->contact, -push.load, normal);
+  w->seen.friction += push.load * push.mu;
 }
 
 static meeting meeting_of(const trb_model *m, const trb_pair *pair, const trb_instant *at)

@@ -1,13 +1,8 @@
 /* Sums over the modes of a body that deforms. */
 #include <string.h>
 
+#include "base/variant.h"
 #include "contact/kernels.h"
-
-#ifndef TRB_KERNEL_VARIANT
-#define TRB_KERNEL_VARIANT scalar
-#endif
-#define TRB_JOIN_(a, b) a##b
-#define TRB_JOIN(a, b) TRB_JOIN_(a, b)
 
 /* Numbers side by side, as compilers of C know them: left alone they take the loop over the modes instead, and shuffle. */
 typedef double lanes __attribute__((vector_size(TRB_SHAPE_ROOM * sizeof(double))));

@@ -5,18 +5,12 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/variant.h"
 #include "contact/kernels.h"
 
 const trb_kernel_variant trb_kernel_variants[] = {
-    {"scalar", trb_raceway_kernel_scalar, trb_rib_kernel_scalar, &trb_modal_kernels_scalar},
-    {"base", trb_raceway_kernel_base, trb_rib_kernel_base, &trb_modal_kernels_base},
-#ifdef TRB_HAVE_AVX2
-    {"avx2", trb_raceway_kernel_avx2, trb_rib_kernel_avx2, &trb_modal_kernels_avx2},
-#endif
-#ifdef TRB_HAVE_AVX512
-    {"avx512", trb_raceway_kernel_avx512, trb_rib_kernel_avx512, &trb_modal_kernels_avx512},
-#endif
-};
+#define VARIANT(name) {#name, trb_raceway_kernel_##name, trb_rib_kernel_##name, &trb_modal_kernels_##name},
+    TRB_VARIANTS(VARIANT)};
 const int trb_n_kernel_variants = (int)(sizeof trb_kernel_variants / sizeof trb_kernel_variants[0]);
 
 int trb_kernel_runs(int variant)
@@ -62,13 +56,10 @@ trb_status trb_workspace_create(const trb_pair *pairs, int n_pairs, const char *
   const trb_status status = choose_variant(variant, &chosen, message);
   if (status != TRB_OK) return status;
   trb_workspace *w = calloc(1, sizeof *w);
-  trb_lanes     *lanes = trb_zeros(1, sizeof *lanes);
-  if (w == NULL || lanes == NULL) {
-    free(w);
-    free(lanes);
+  if (w == NULL || (w->lanes = trb_zeros(1, sizeof *w->lanes)) == NULL) {
+    trb_workspace_free(w);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for a workspace");
   }
-  w->lanes = lanes;
   w->variant = chosen;
   choose(pairs, n_pairs, w);
   *work = w;
@@ -91,12 +82,12 @@ trb_status trb_detail_create(const trb_model *m, const trb_pair *pairs, int n_pa
   *detail = NULL;
   if (d == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for contact details");
   for (int i = 0; i < n_pairs; i++) d->n_contacts += pairs[i].kind->contact != TRB_CONTACT_NONE;
-  d->lanes = calloc(lane_total(m), sizeof(double));
-  d->contacts = calloc((size_t)d->n_contacts * rollers + 1, sizeof *d->contacts);
-  d->pocket_force = calloc(slots, sizeof(double));
-  d->pocket_friction = calloc(slots, sizeof(double));
-  d->pocket_interference = calloc(slots, sizeof(double));
-  if (!d->lanes || !d->contacts || !d->pocket_force || !d->pocket_friction || !d->pocket_interference) {
+  d->lanes = trb_memory_zeros(&d->memory, lane_total(m), sizeof(double));
+  d->contacts = trb_memory_zeros(&d->memory, (size_t)d->n_contacts * rollers, sizeof *d->contacts);
+  d->pocket_force = trb_memory_zeros(&d->memory, slots, sizeof(double));
+  d->pocket_friction = trb_memory_zeros(&d->memory, slots, sizeof(double));
+  d->pocket_interference = trb_memory_zeros(&d->memory, slots, sizeof(double));
+  if (d->memory.lacks) {
     trb_detail_free(d);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for contact details");
   }
@@ -107,11 +98,7 @@ trb_status trb_detail_create(const trb_model *m, const trb_pair *pairs, int n_pa
 void trb_detail_free(trb_detail *detail)
 {
   if (detail == NULL) return;
-  free(detail->lanes);
-  free(detail->contacts);
-  free(detail->pocket_force);
-  free(detail->pocket_friction);
-  free(detail->pocket_interference);
+  trb_memory_free(&detail->memory);
   free(detail);
 }
 

@@ -7,23 +7,13 @@
 
 #include <float.h>
 
+#include "base/variant.h"
 #include "contact/kernels.h"
 #include "laws/film.h"
 #include "laws/line_contact.h"
 #include "laws/traction.h"
 #include "laws/viscosity.h"
 
-#ifndef TRB_KERNEL_VARIANT
-#define TRB_KERNEL_VARIANT scalar
-#endif
-#define TRB_JOIN_(a, b) a##b
-#define TRB_JOIN(a, b) TRB_JOIN_(a, b)
-
-#if defined(__GNUC__) && !defined(__clang__)
-#define TRB_LANES _Pragma("GCC ivdep")
-#else
-#define TRB_LANES
-#endif
 #if defined(__GNUC__)
 #define TRB_PADDED(n) if ((n) % TRB_LANE_PAD != 0) __builtin_unreachable()
 #else
@@ -195,6 +185,20 @@ static inline void pass_friction(const trb_model *m, const trb_pass_kind *kind, 
   } else {
     copy_lanes(n, l->traction_coefficient, l->friction_coefficient);
   }
+}
+
+/* What the oil does: films, of which the parts before the thermal factor are there, and friction. */
+static inline void pass_oil(const trb_model *m, const trb_pass_kind *kind, int n, trb_lanes *l, trb_counters *counters)
+{
+  if (m->film) {
+    counters->film_nodes += n;
+    if (m->params.thermal > 0.0) {
+      pass_thermal(m, n, l);
+      counters->thermal_nodes += n;
+    }
+    pass_film_parameter(m, kind, n, l);
+  }
+  if (m->friction) pass_friction(m, kind, n, l, counters);
 }
 
 #endif

@@ -8,7 +8,6 @@
 
 #include "contact/deformed.h"
 #include "contact/facets.h"
-#include "contact/friction.h"
 #include "contact/pair.h"
 #include "contact/pocket_view.h"
 #include "laws/line_contact.h"
@@ -69,24 +68,22 @@ static void view_motions(const trb_roller_pose *r, const trb_rigid_pose *cage, c
   p->force = p->moment = p->cage_force = p->cage_moment = trb_v(0, 0, 0);
 }
 
-/* d(-q n - q mu(v) s/v) for every motion: the load follows interference and its rate, friction the load, and the sliding s of speed v. */
-static void add_slopes(const trb_model *m, const trb_pocket_touch *c, const trb_touch *touch, trb_vec3 arm, double q, double factor,
-                       trb_slopes *slopes)
+/* d(-q n - q mu(v) s/v) for every motion: the load q follows interference and its rate, friction the load, and the sliding s of speed v. */
+static void add_slopes(const trb_model *m, const trb_pocket_touch *c, const trb_touch *touch, const trb_push *is, trb_vec3 arm,
+                       double factor, trb_slopes *slopes)
 {
-  const double   step = 1e-6 * touch->speed, mu = m->pocket_friction ? factor * trb_sliding_coefficient(m, touch->speed) : 0.0;
-  const double   more = m->pocket_friction ? factor * trb_sliding_coefficient(m, touch->speed + step) : 0.0;
-  const double   drag = q * mu / touch->speed, bend = q * (more / (touch->speed + step) - mu / touch->speed) / (step * touch->speed);
-  const double   stiffness = c->exponent * q / c->interference, damping = q > 0.0 ? trb_cage_damping(m) * c->elastic : 0.0;
-  const trb_vec3 load = trb_axpy(c->normal, mu / touch->speed, touch->sliding);
+  const double   step = 1e-6 * touch->speed, more = m->pocket_friction ? factor * trb_sliding_coefficient(m, touch->speed + step) : 0.0;
+  const double   bend = is->load * (more / (touch->speed + step) - is->mu / touch->speed) / (step * touch->speed);
+  const double   stiffness = c->exponent * is->load / c->interference, damping = is->load > 0.0 ? trb_cage_damping(m) * c->elastic : 0.0;
+  const trb_vec3 load = trb_axpy(c->normal, is->mu / touch->speed, touch->sliding);
   const trb_vec3 units[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  const trb_vec3 force = trb_axpy(trb_scale(-q, c->normal), -drag, touch->sliding);
   for (int k = 0; k < 6; k++) {
     const trb_vec3 unit = units[k % 3], moved = k < 3 ? unit : trb_cross(unit, arm);
     const double   deeper = trb_dot(c->normal, moved);
     const trb_vec3 slid = trb_axpy(moved, -deeper, c->normal);
-    const trb_vec3 dragged = trb_add(trb_scale(drag, slid), trb_scale(bend * trb_dot(touch->sliding, slid), touch->sliding));
+    const trb_vec3 dragged = trb_add(trb_scale(is->drag, slid), trb_scale(bend * trb_dot(touch->sliding, slid), touch->sliding));
     trb_add_slope(&slopes->place[k], arm, trb_scale(-stiffness * deeper, load));
-    trb_add_carried(&slopes->place[k], k, unit, c, arm, force, q);
+    trb_add_carried(&slopes->place[k], k, unit, c, arm, is->force, is->load);
     trb_add_slope(&slopes->velocity[k], arm, trb_sub(trb_scale(-damping * deeper, load), dragged));
   }
 }
@@ -95,25 +92,18 @@ static void add_slopes(const trb_model *m, const trb_pocket_touch *c, const trb_
 static void push(const trb_model *m, const trb_pocket_face *f, trb_pocket_view *p, const trb_pocket_touch *c, trb_counters *counters,
                  trb_load *load, trb_pocket_sums *sums)
 {
-  const trb_vec3  arm = trb_sub(c->point, p->x), cage_arm = trb_sub(c->point, p->cage);
-  const trb_touch touch =
-      trb_touching(trb_add(p->v, trb_cross(p->omega, arm)), trb_add(p->cage_v, trb_cross(p->cage_omega, cage_arm)), c->normal);
-  const double q = trb_damped(c->elastic, trb_cage_damping(m), touch.rate), factor = f->friction_factor;
-  double       mu = 0.0;
-  if (m->pocket_friction) mu = factor * trb_sliding_coefficient(m, touch.speed);
-  const double   drag = q * mu / touch.speed;
-  const trb_vec3 force = trb_axpy(trb_scale(-q, c->normal), -drag, touch.sliding);
-  p->force = trb_add(p->force, force);
-  p->moment = trb_add(p->moment, trb_cross(arm, force));
-  p->cage_force = trb_sub(p->cage_force, force);
-  p->cage_moment = trb_sub(p->cage_moment, trb_cross(cage_arm, force));
+  const trb_vec3  arm = trb_sub(c->point, p->x);
+  const trb_touch touch = trb_pocket_touching(p, c);
+  const trb_push  is = trb_push_at(m, &touch, c->normal, c->elastic, trb_cage_damping(m), f->friction_factor, load->lost);
+  p->force = trb_add(p->force, is.force);
+  p->moment = trb_add(p->moment, trb_cross(arm, is.force));
+  p->cage_force = trb_sub(p->cage_force, is.force);
+  p->cage_moment = trb_sub(p->cage_moment, trb_cross(trb_sub(c->point, p->cage), is.force));
   load->elastic += c->elastic * c->interference / (1.0 + c->exponent);
-  load->lost[TRB_BY_SLIDING] += drag * trb_dot(touch.sliding, touch.sliding);
-  load->lost[TRB_BY_DAMPING] += (q - c->elastic) * touch.rate;
-  sums->force += q;
-  sums->friction += q * mu;
+  sums->force += is.load;
+  sums->friction += is.load * is.mu;
   counters->pocket_nodes++;
-  if (p->slopes != NULL) add_slopes(m, c, &touch, arm, q, factor, p->slopes);
+  if (p->slopes != NULL) add_slopes(m, c, &touch, &is, arm, f->friction_factor, p->slopes);
 }
 
 /* Interference of a sphere with a face, its centre h above the plane, and the normal from the centre to the nearest point. Without contact

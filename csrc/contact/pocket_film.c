@@ -6,7 +6,6 @@
  * The load W acts before the point of contact. Force and couple at the point are F = -W n + H e/2 - eta J (u1 - u2) and the moment of W, R H,
  * about the roller's axis; H is the integral of h dp/dx. What they lose is V W + u H + eta J (u1 - u2)^2: positive, whatever the motion. */
 #include "contact/contact.h"
-#include "contact/friction.h"
 #include "contact/pocket_view.h"
 #include "laws/squeeze.h"
 
@@ -105,9 +104,8 @@ static void add_film_slopes(const trb_bar_film *film, const trb_bar_slice *slice
 void trb_pocket_push_film(const trb_model *m, trb_pocket_view *p, const trb_pocket_touch *c, double radius, double width,
                           trb_counters *counters, trb_load *load, trb_pocket_sums *sums)
 {
-  const trb_vec3  arm = trb_sub(c->point, p->x), cage_arm = trb_sub(c->point, p->cage);
-  const trb_touch touch =
-      trb_touching(trb_add(p->v, trb_cross(p->omega, arm)), trb_add(p->cage_v, trb_cross(p->cage_omega, cage_arm)), c->normal);
+  const trb_vec3      arm = trb_sub(c->point, p->x);
+  const trb_touch     touch = trb_pocket_touching(p, c);
   const trb_bar_slice slice = {.gap = -c->interference,
                                .radius = radius,
                                .width = width,
@@ -120,7 +118,7 @@ void trb_pocket_push_film(const trb_model *m, trb_pocket_view *p, const trb_pock
   p->force = trb_add(p->force, film.force);
   p->moment = trb_add(p->moment, trb_add(trb_cross(arm, film.force), film.couple));
   p->cage_force = trb_sub(p->cage_force, film.force);
-  p->cage_moment = trb_sub(p->cage_moment, trb_add(trb_cross(cage_arm, film.force), film.couple));
+  p->cage_moment = trb_sub(p->cage_moment, trb_add(trb_cross(trb_sub(c->point, p->cage), film.force), film.couple));
   load->lost[TRB_BY_FILM] += film.lost;
   sums->force += film.is.load;
   sums->friction += trb_norm(trb_axpy(film.force, film.is.load, c->normal));

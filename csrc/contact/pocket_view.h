@@ -2,7 +2,7 @@
 #ifndef TRB_CONTACT_POCKET_VIEW_H
 #define TRB_CONTACT_POCKET_VIEW_H
 
-#include "contact/contact.h"
+#include "contact/friction.h"
 
 /* Roller and cage in the frame of the pocket. Velocities and sums are filled only where they may touch. */
 typedef struct trb_pocket_view {
@@ -32,6 +32,13 @@ typedef struct trb_pocket_touch {
   trb_vec3 carried;       /* part of the arm that turns with the roller while the normal stays, m; or */
   int      on_end;        /* point of the face on the roller's end: the normal turns with the roller, the point stays */
 } trb_pocket_touch;
+
+/* How the surfaces move there. */
+static inline trb_touch trb_pocket_touching(const trb_pocket_view *p, const trb_pocket_touch *c)
+{
+  return trb_touching(trb_add(p->v, trb_cross(p->omega, trb_sub(c->point, p->x))),
+                      trb_add(p->cage_v, trb_cross(p->cage_omega, trb_sub(c->point, p->cage))), c->normal);
+}
 
 static inline void trb_add_slope(trb_wrench *w, trb_vec3 arm, trb_vec3 force)
 {

@@ -370,16 +370,8 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inp
     }
   }
   pass_speeds(m, all, l);
-  if (m->film) {
-    pass_film(m, all, l);
-    counters->film_nodes += all;
-    if (m->params.thermal > 0.0) {
-      pass_thermal(m, all, l);
-      counters->thermal_nodes += all;
-    }
-    pass_film_parameter(m, &kind, all, l);
-  }
-  if (m->friction) pass_friction(m, &kind, all, l, counters);
+  if (m->film) pass_film(m, all, l);
+  pass_oil(m, &kind, all, l, counters);
   if (rolling) {
     for (int c = 0; c < n_loaded; c++) pass_rolled(m, c * n, l);
     pass_rolling(m, all, l);

@@ -143,16 +143,8 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_rib *rib, const trb_instant *
   pass_load(rib, all, l);
   pass_speeds(m, all, l);
   if (turns) pass_turning(rib, turning, n, all, arm2, l);
-  if (m->film) {
-    pass_film(m, rib, all, l);
-    counters->film_nodes += all;
-    if (m->params.thermal > 0.0) {
-      pass_thermal(m, all, l);
-      counters->thermal_nodes += all;
-    }
-    pass_film_parameter(m, &kind, all, l);
-  }
-  if (m->friction) pass_friction(m, &kind, all, l, counters);
+  if (m->film) pass_film(m, rib, all, l);
+  pass_oil(m, &kind, all, l, counters);
   if (m->contact_damping > 0.0) counters->damping_nodes += touching;
   for (int j = 0; j < n; j++) {
     const trb_ring_pose *ring = &rings[at->chosen[j]];

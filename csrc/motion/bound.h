@@ -1,14 +1,8 @@
 /* Bounds: proofs that a gap or an interference has changed by less than a length since it was found (docs/theory/numerics.md#bounds-of-gaps).
- *
- * When a roller and another body move, a gap between them changes at most by the sum of the changes of their coordinates, each multiplied
- * by the longest arm by which that coordinate moves anything that may touch along its normal: 1 for a displacement, the largest distance
- * from the axis of turning for an angle. The sum is an upper bound and not an estimate; csrc/tests/test_bounds.c tries to break it.
- * Three things rest on it:
- * - A roller that was clear of its pocket is not evaluated as long as the sum is smaller than the gap.
- * - A tangent is wrong as soon as a contact begins or ends. It is followed as long as the sum is smaller than a share of the interference, or
- *   of the gap, at its origin.
- * - Peaks do not evaluate a load again as long as its interference has hardly changed; by damping and by the film it depends on velocities
- *   too, which have a bound of their own. */
+ * A gap changes at most by the sum of the changes of both bodies' coordinates, each multiplied by the longest arm by which it moves anything that
+ * may touch along its normal. The sum is an upper bound and not an estimate; csrc/tests/test_bounds.c tries to break it. A roller that was clear
+ * of its pocket is not evaluated, a tangent is followed, and a load is not looked at again for peaks as long as the sum is small enough; loads
+ * depend on velocities, too, which have a bound of their own. */
 #ifndef TRB_MOTION_BOUND_H
 #define TRB_MOTION_BOUND_H
 

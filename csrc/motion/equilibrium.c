@@ -509,33 +509,30 @@ trb_status trb_equilibrium_solve(const trb_system *system, trb_equilibrium *e, t
   const trb_model *m = system->model;
   const size_t     n = (size_t)m->n_rollers;
   solver           s = {.m = m, .e = e};
+  double           step_ring[TRB_RING_FREEDOMS] = {0}, *step_rollers;
   /* without a pair that seats it nothing but friction holds a roller along its axis, and a cylinder without ribs at both ends; in planar motion
    * it does not skew, nor does a cylinder but by friction */
   s.held[1] = !trb_system_seats(system) || (trb_has_cylinders(m) && !trb_between_ribs(&m->params));
   s.held[3] = m->params.planar > 0.0 || trb_has_cylinders(m);
   trb_status status = trb_dynamics_create(system, NULL, "scalar", &s.d, message);
   if (status != TRB_OK) return status;
-  enum { DOUBLES = N + R + N + R + N * N + N * R + N * R + N * (R + 1) + N + N + 2 };
-  double *block = calloc(n * DOUBLES, sizeof(double));
-  double  step_ring[TRB_RING_FREEDOMS] = {0};
-  if (block == NULL) {
+  trb_memory     memory = {0};
+  double **const parts[] = {&s.forces,    &s.ring,   &s.shifted, &s.ring_shifted, &s.own,  &s.to_ring,
+                            &s.from_ring, &s.solved, &s.trial,   &s.elastic,      &s.fine, &step_rollers};
+  const size_t   sizes[] = {N, R, N, R, N * N, N * R, N * R, N * (R + 1), N, 1, 1, N};
+  for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) *parts[i] = trb_memory_zeros(&memory, n * sizes[i], sizeof(double));
+  if (memory.lacks) {
+    trb_memory_free(&memory);
     trb_dynamics_free(s.d);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the equilibrium");
   }
-  double *at = block, **const parts[] = {&s.forces,    &s.ring,   &s.shifted, &s.ring_shifted, &s.own, &s.to_ring,
-                                         &s.from_ring, &s.solved, &s.trial,   &s.elastic,      &s.fine};
-  const size_t sizes[] = {N, R, N, R, N * N, N * R, N * R, N * (R + 1), N, 1, 1};
-  for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
-    *parts[i] = at;
-    at += n * sizes[i];
-  }
-  if (!e->warm) place_light_rollers(&s, at, step_ring);
-  status = iterate(&s, at, step_ring, message);
+  if (!e->warm) place_light_rollers(&s, step_rollers, step_ring);
+  status = iterate(&s, step_rollers, step_ring, message);
   read_reaction(&s);
   read_other(&s);
   if (status == TRB_OK && e->loads != NULL) status = read_loads(&s, message);
   if (status == TRB_OK && e->stiffness != NULL) status = condense(&s, message);
-  free(block);
+  trb_memory_free(&memory);
   trb_dynamics_free(s.d);
   return status;
 }

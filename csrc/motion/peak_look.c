@@ -25,6 +25,7 @@ struct trb_peak_look {
   trb_arms         arms[TRB_MOST_PAIRS];
   int             *posed; /* per roller: its pose is that of this look */
   int              offset[TRB_N_PEAK_QUANTITIES + 1];
+  trb_memory       memory; /* of all arrays */
 };
 
 int trb_peak_look_offset(const trb_system *s, int quantity)
@@ -54,11 +55,10 @@ trb_status trb_peak_look_create(const trb_system *system, const trb_motion *moti
   p->system.model = &p->normal;
   p->normal.friction = p->normal.pocket_friction = 0;
   p->normal.params.rolling_resistance = 0.0;
-  p->bounds = calloc(TRB_MOST_PAIRS * n, sizeof *p->bounds);
-  p->speeds = calloc(TRB_MOST_PAIRS * n, sizeof *p->speeds);
-  p->posed = calloc(n, sizeof *p->posed);
-  const int  made = p->bounds != NULL && p->speeds != NULL && p->posed != NULL;
-  trb_status status = made ? TRB_OK : trb_fail(message, TRB_ERR_MEMORY, "out of memory for peaks");
+  p->bounds = trb_memory_zeros(&p->memory, TRB_MOST_PAIRS * n, sizeof *p->bounds);
+  p->speeds = trb_memory_zeros(&p->memory, TRB_MOST_PAIRS * n, sizeof *p->speeds);
+  p->posed = trb_memory_zeros(&p->memory, n, sizeof *p->posed);
+  trb_status status = p->memory.lacks ? trb_fail(message, TRB_ERR_MEMORY, "out of memory for peaks") : TRB_OK;
   if (status == TRB_OK) status = trb_dynamics_create(&p->system, motion, variant, &p->d, message);
   if (status == TRB_OK) status = trb_detail_create(m, system->pairs, system->n_pairs, &p->detail, message);
   if (status != TRB_OK) {
@@ -79,9 +79,7 @@ void trb_peak_look_free(trb_peak_look *look)
   if (look == NULL) return;
   trb_dynamics_free(look->d);
   trb_detail_free(look->detail);
-  free(look->bounds);
-  free(look->speeds);
-  free(look->posed);
+  trb_memory_free(&look->memory);
   free(look);
 }
 

@@ -54,6 +54,10 @@ int trb_field_shape(const trb_model *m, trb_field_kind kind, int shape[2]);
 int trb_field_size(const trb_system *s, int field);
 /* Offset of a field in a record; TRB_N_FIELDS gives the record's length. */
 int trb_record_offset(const trb_system *s, int field);
+/* Energies that are functions of the state (docs/theory/energy.md#stored-energy): the kinetic one at the poses kept, and the elastic one of all
+ * contacts at the loads kept and within bodies, J. Works and losses are quadratures (bearing/losses.h). */
+double trb_audit_kinetic(const trb_dynamics *d);
+double trb_audit_elastic(const trb_dynamics *d);
 /* Fill a record at (time, y). detail: buffers of the caller. apart: what is known not to touch there (trb_fast_apart), saves time; may
  * be NULL. */
 void trb_record_fill(trb_dynamics *d, const unsigned *apart, double time, const double *y, trb_detail *detail, double *record);

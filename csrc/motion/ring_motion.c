@@ -56,11 +56,11 @@ trb_status trb_motion_create(const double *table, int n, trb_motion **motion, tr
   if (m == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for prescribed motion");
   m->n = n;
   m->tail = n - 1;
-  m->table = malloc((size_t)n * TRB_MOTION_COLUMNS * sizeof(double));
-  m->angle = calloc((size_t)n * N_TURNING, sizeof(double));
-  m->joint = calloc((size_t)n, sizeof(int));
-  m->next = calloc((size_t)n, sizeof(int));
-  if (m->table == NULL || m->angle == NULL || m->joint == NULL || m->next == NULL) {
+  m->table = trb_memory_zeros(&m->memory, (size_t)n * TRB_MOTION_COLUMNS, sizeof(double));
+  m->angle = trb_memory_zeros(&m->memory, (size_t)n * N_TURNING, sizeof(double));
+  m->joint = trb_memory_zeros(&m->memory, (size_t)n, sizeof(int));
+  m->next = trb_memory_zeros(&m->memory, (size_t)n, sizeof(int));
+  if (m->memory.lacks) {
     trb_motion_free(m);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for prescribed motion");
   }
@@ -83,10 +83,7 @@ trb_status trb_motion_create(const double *table, int n, trb_motion **motion, tr
 void trb_motion_free(trb_motion *motion)
 {
   if (motion == NULL) return;
-  free(motion->table);
-  free(motion->angle);
-  free(motion->joint);
-  free(motion->next);
+  trb_memory_free(&motion->memory);
   free(motion);
 }
 

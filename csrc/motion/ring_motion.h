@@ -6,6 +6,7 @@
 #ifndef TRB_MOTION_RING_MOTION_H
 #define TRB_MOTION_RING_MOTION_H
 
+#include "base/memory.h"
 #include "base/status.h"
 #include "body/drive.h"
 
@@ -19,6 +20,7 @@ typedef struct trb_motion {
   int    *next;  /* and the first one after it; n: none */
   int     tail;  /* knot at which the part that repeats begins; n - 1: nothing repeats */
   int     moves; /* 1: a channel that contacts depend on changes: any but the loads on a free ring */
+  trb_memory memory; /* of all arrays */
 } trb_motion;
 
 /* table: n rows of TRB_MOTION_COLUMNS, times increasing. Two rows may have the same time: the motion has a kink or a step there, from

@@ -5,7 +5,6 @@
 
 #include "body/cage.h"
 #include "body/free_ring.h"
-#include "motion/audit.h"
 #include "motion/record.h"
 
 #define INFO(name, group, kind, unit, text) {#name, #group, unit, text, 0, TRB_FIELD_##kind, -1},
@@ -21,6 +20,25 @@ enum { TRB_FIELDS_OF_cage(QUANTITY, 0, CAGE, 0, "") };
 enum { TRB_FIELDS_OF_roller(QUANTITY, 0, ROLLER, 0, "") };
 enum { TRB_FIELDS_OF_pocket(QUANTITY, 0, POCKET, 0, "") };
 enum { TRB_FIELDS_OF_ring(QUANTITY, 0, RING, 0, "") };
+
+double trb_audit_kinetic(const trb_dynamics *d)
+{
+  double energy = 0.0;
+  for (int j = 0; j < d->model->n_rollers; j++) energy += trb_roller_kinetic(d->model, &d->rollers[j]);
+  for (int b = 0; b < d->system->n_bodies; b++) {
+    const trb_body *body = &d->system->bodies[b];
+    if (body->size > 0 && !body->carried) energy += body->kind->kinetic(d->model, body, &d->bodies[b].pose) + d->bodies[b].pose.moving;
+  }
+  return energy;
+}
+
+double trb_audit_elastic(const trb_dynamics *d)
+{
+  double energy = 0.0;
+  for (int j = 0; j < d->model->n_rollers; j++) energy += d->loads[j].elastic;
+  for (int b = 0; b < d->system->n_bodies; b++) energy += d->system->bodies[b].carried ? 0.0 : d->bodies[b].pose.stored;
+  return energy + d->hub.elastic;
+}
 
 static void put3(double *to, trb_vec3 v) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
 

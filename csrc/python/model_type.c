@@ -148,13 +148,10 @@ static PyObject *state_name(const trb_body *body, int coordinate)
  * the shaft. */
 static PyObject *layout_of(const trb_system *s)
 {
-#define NAME(name, kind, text) #name,
-  static const char *const roller[] = {TRB_ROLLER_STATE(NAME)};
-#undef NAME
   PyObject *list = PyList_New(0);
   for (int i = 0; i < TRB_ROLLER_SIZE; i++)
-    append(&list, Py_BuildValue("(Ni(ii))", PyUnicode_FromFormat("roller_%s", roller[i]), trb_state_roller(s, 0) + i, s->model->n_rollers,
-                                TRB_ROLLER_SIZE));
+    append(&list, Py_BuildValue("(Ni(ii))", PyUnicode_FromFormat("roller_%s", trb_roller_coordinates[i].name), trb_state_roller(s, 0) + i,
+                                s->model->n_rollers, TRB_ROLLER_SIZE));
   for (int b = 0; b < s->n_bodies; b++)
     for (int c = 0; c < s->bodies[b].size; c++)
       append(&list, Py_BuildValue("(Ni())", state_name(&s->bodies[b], c), s->bodies[b].first + c));

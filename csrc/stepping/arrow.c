@@ -3,8 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
-
 enum { LINE = 8 }; /* entries of a cache line */
 
 /* Entries of an array of the borders, so that the next one starts with a cache line. */
@@ -15,19 +13,20 @@ trb_status trb_arrow_create(int n_rollers, int hub_width, trb_arrow **arrow, trb
   const int    room = trb_hub_room(hub_width);
   const size_t n = (size_t)n_rollers, to_hub = padded(TRB_NR, hub_width), from = padded(TRB_NR, room);
   trb_arrow   *a = calloc(1, sizeof *a);
+  double      *border = NULL;
   *arrow = NULL;
   if (a != NULL) {
-    a->rollers = trb_zeros(n, sizeof *a->rollers);
-    a->borders = trb_zeros(n, sizeof *a->borders);
-    a->hub = trb_zeros((size_t)hub_width * (size_t)room, sizeof *a->hub);
-    a->memory = trb_zeros(n * (to_hub + from), sizeof *a->memory);
+    a->rollers = trb_memory_zeros(&a->memory, n, sizeof *a->rollers);
+    a->borders = trb_memory_zeros(&a->memory, n, sizeof *a->borders);
+    a->hub = trb_memory_zeros(&a->memory, (size_t)hub_width * (size_t)room, sizeof *a->hub);
+    border = trb_memory_zeros(&a->memory, n * (to_hub + from), sizeof *border);
   }
-  if (a == NULL || a->rollers == NULL || a->borders == NULL || a->hub == NULL || a->memory == NULL) {
+  if (a == NULL || a->memory.lacks) {
     trb_arrow_free(a);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the Jacobian of %d rollers", n_rollers);
   }
   for (size_t j = 0; j < n; j++) {
-    a->borders[j].to_hub = a->memory + j * (to_hub + from);
+    a->borders[j].to_hub = border + j * (to_hub + from);
     a->borders[j].from = a->borders[j].to_hub + to_hub;
   }
   a->n = n_rollers;
@@ -40,10 +39,7 @@ trb_status trb_arrow_create(int n_rollers, int hub_width, trb_arrow **arrow, trb
 void trb_arrow_free(trb_arrow *arrow)
 {
   if (arrow == NULL) return;
-  free(arrow->rollers);
-  free(arrow->borders);
-  free(arrow->hub);
-  free(arrow->memory);
+  trb_memory_free(&arrow->memory);
   free(arrow);
 }
 
@@ -64,23 +60,23 @@ trb_status trb_arrow_factors_create(int n_rollers, int hub_width, int variant, t
   const int          room = trb_hub_room(hub_width);
   const size_t       n = (size_t)n_rollers, width = (size_t)hub_width, solved = padded(hub_width, TRB_NP), from = padded(TRB_NR, room);
   trb_arrow_factors *f = calloc(1, sizeof *f);
+  double            *border = NULL;
   *factors = NULL;
   if (f != NULL) {
-    f->rollers = trb_zeros(n, sizeof *f->rollers);
-    f->borders = trb_zeros(n, sizeof *f->borders);
-    f->memory = trb_zeros(n * (solved + from), sizeof *f->memory);
-    f->hub.schur = trb_zeros(width * (size_t)room, sizeof *f->hub.schur);
-    f->hub.inverse = trb_zeros(width * (size_t)room, sizeof *f->hub.inverse);
-    f->hub.scratch = trb_zeros(2 * (size_t)room, sizeof *f->hub.scratch);
-    f->hub.pivot = trb_zeros(width, sizeof *f->hub.pivot);
+    f->rollers = trb_memory_zeros(&f->memory, n, sizeof *f->rollers);
+    f->borders = trb_memory_zeros(&f->memory, n, sizeof *f->borders);
+    f->hub.schur = trb_memory_zeros(&f->memory, width * (size_t)room, sizeof *f->hub.schur);
+    f->hub.inverse = trb_memory_zeros(&f->memory, width * (size_t)room, sizeof *f->hub.inverse);
+    f->hub.scratch = trb_memory_zeros(&f->memory, 2 * (size_t)room, sizeof *f->hub.scratch);
+    f->hub.pivot = trb_memory_zeros(&f->memory, width, sizeof *f->hub.pivot);
+    border = trb_memory_zeros(&f->memory, n * (solved + from), sizeof *border);
   }
-  if (f == NULL || f->rollers == NULL || f->borders == NULL || f->memory == NULL || f->hub.schur == NULL || f->hub.inverse == NULL ||
-      f->hub.scratch == NULL || f->hub.pivot == NULL) {
+  if (f == NULL || f->memory.lacks) {
     trb_arrow_factors_free(f);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the factors of %d rollers", n_rollers);
   }
   for (size_t j = 0; j < n; j++) {
-    f->borders[j].solved = f->memory + j * (solved + from);
+    f->borders[j].solved = border + j * (solved + from);
     f->borders[j].from = f->borders[j].solved + solved;
   }
   f->n = n_rollers;
@@ -104,13 +100,7 @@ void trb_arrow_factors_free(trb_arrow_factors *factors)
 {
   if (factors == NULL) return;
   trb_followers_free(factors->followers);
-  free(factors->rollers);
-  free(factors->borders);
-  free(factors->memory);
-  free(factors->hub.schur);
-  free(factors->hub.inverse);
-  free(factors->hub.scratch);
-  free(factors->hub.pivot);
+  trb_memory_free(&factors->memory);
   free(factors);
 }
 

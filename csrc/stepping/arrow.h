@@ -20,8 +20,8 @@ typedef struct trb_arrow_factors {
   trb_arrow_factor_block  *rollers;
   trb_arrow_factor_border *borders;
   trb_hub_factor           hub;
-  double                  *memory;    /* of the borders */
   trb_followers           *followers; /* entries of the hub that are eliminated first; NULL: none */
+  trb_memory               memory;    /* of all arrays */
 } trb_arrow_factors;
 
 /* hub_width: entries of the hub, from 0. */

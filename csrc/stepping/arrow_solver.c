@@ -41,18 +41,6 @@ static SUNLinearSolver_Type solver_type(SUNLinearSolver solver)
   return SUNLINEARSOLVER_DIRECT;
 }
 
-static SUNLinearSolver_ID solver_id(SUNLinearSolver solver)
-{
-  (void)solver;
-  return SUNLINEARSOLVER_CUSTOM;
-}
-
-static int solver_initialize(SUNLinearSolver solver)
-{
-  (void)solver;
-  return 0;
-}
-
 /* > 0: singular, the integrator may try again with another step. */
 static int solver_setup(SUNLinearSolver solver, SUNMatrix matrix)
 {
@@ -111,8 +99,6 @@ SUNLinearSolver trb_arrow_linear_solver(const trb_assembly *assembly, int varian
   }
   solver->content = factors;
   solver->ops->gettype = solver_type;
-  solver->ops->getid = solver_id;
-  solver->ops->initialize = solver_initialize;
   solver->ops->setup = solver_setup;
   solver->ops->solve = solver_solve;
   solver->ops->free = solver_free;

@@ -3,13 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/variant.h"
 #include "stepping/blocks.h"
-
-#ifndef TRB_KERNEL_VARIANT
-#define TRB_KERNEL_VARIANT scalar
-#endif
-#define TRB_JOIN_(a, b) a##b
-#define TRB_JOIN(a, b) TRB_JOIN_(a, b)
 
 /* The entry on the diagonal is taken as the pivot if it is at least this share of the largest entry: no multiplier is then larger than 1
  * over it. */

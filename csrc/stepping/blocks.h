@@ -94,7 +94,7 @@ typedef struct trb_arrow {
   trb_arrow_block  *rollers;     /* n */
   trb_arrow_border *borders;     /* n */
   double           *hub;         /* [width][room], column by column, padded by zeros */
-  double           *memory;      /* of the borders */
+  trb_memory        memory;      /* of all arrays */
 } trb_arrow;
 
 #endif

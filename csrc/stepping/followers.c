@@ -3,8 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
-
 /* Numbers of followers and of entries that are kept. */
 static void sort(trb_followers *f, const int (*entries)[2])
 {
@@ -19,29 +17,25 @@ trb_status trb_followers_create(int n_rollers, int hub_width, int n, const int (
                                 trb_message *message)
 {
   const int      kept = hub_width - n, room = trb_hub_room(kept);
-  const size_t   of_rollers = (size_t)n_rollers * (size_t)n * TRB_NP, of_hub = (size_t)n * (size_t)room;
-  const size_t   of_border = (size_t)kept * TRB_NR + (size_t)room * TRB_NR;
   trb_followers *f = calloc(1, sizeof *f);
   *followers = NULL;
   if (f != NULL) {
-    f->memory = trb_zeros(2 * (size_t)n + of_hub + of_rollers + of_border, sizeof *f->memory);
-    f->numbers = calloc(2 * (size_t)n + (size_t)kept, sizeof *f->numbers);
-    f->place = calloc((size_t)hub_width, sizeof *f->place);
+    f->entry = trb_memory_zeros(&f->memory, (size_t)n, sizeof *f->entry);
+    f->leader = trb_memory_zeros(&f->memory, (size_t)n, sizeof *f->leader);
+    f->kept_entry = trb_memory_zeros(&f->memory, (size_t)kept, sizeof *f->kept_entry);
+    f->place = trb_memory_zeros(&f->memory, (size_t)hub_width, sizeof *f->place);
+    f->rate = trb_memory_zeros(&f->memory, (size_t)n, sizeof *f->rate);
+    f->own = trb_memory_zeros(&f->memory, (size_t)n, sizeof *f->own);
+    f->hub = trb_memory_zeros(&f->memory, (size_t)n * (size_t)room, sizeof *f->hub);
+    f->rollers = trb_memory_zeros(&f->memory, (size_t)n_rollers * (size_t)n * TRB_NP, sizeof *f->rollers);
+    f->folded.to_hub = trb_memory_zeros(&f->memory, (size_t)kept * TRB_NR, sizeof *f->folded.to_hub);
+    f->folded.from = trb_memory_zeros(&f->memory, (size_t)room * TRB_NR, sizeof *f->folded.from);
   }
-  if (f == NULL || f->memory == NULL || f->numbers == NULL || f->place == NULL) {
+  if (f == NULL || f->memory.lacks) {
     trb_followers_free(f);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the factors of %d rollers", n_rollers);
   }
   f->n = n, f->kept = kept, f->width = hub_width, f->room = room;
-  f->rate = f->memory;
-  f->hub = f->rate + n;
-  f->rollers = f->hub + of_hub;
-  f->own = f->rollers + of_rollers;
-  f->folded.to_hub = f->own + n;
-  f->folded.from = f->folded.to_hub + (size_t)kept * TRB_NR;
-  f->entry = f->numbers;
-  f->leader = f->entry + n;
-  f->kept_entry = f->leader + n;
   sort(f, entries);
   *followers = f;
   return TRB_OK;
@@ -50,9 +44,7 @@ trb_status trb_followers_create(int n_rollers, int hub_width, int n, const int (
 void trb_followers_free(trb_followers *followers)
 {
   if (followers == NULL) return;
-  free(followers->memory);
-  free(followers->numbers);
-  free(followers->place);
+  trb_memory_free(&followers->memory);
   free(followers);
 }
 

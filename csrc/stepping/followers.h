@@ -16,9 +16,8 @@ typedef struct trb_followers {
   double          *rollers;        /* [roller][n][TRB_NP]: in the rows of the rollers */
   double          *own;            /* [n]: right-hand sides of their equations */
   trb_arrow_border folded;         /* of a roller, scratch */
-  double          *memory;
-  int             *numbers;
-  int             *place; /* [width]: of every entry among those that are kept */
+  int             *place;          /* [width]: of every entry among those that are kept */
+  trb_memory       memory;         /* of all arrays */
 } trb_followers;
 
 /* entries: two a follower: its own and that of the one that it follows. */

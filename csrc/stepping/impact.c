@@ -7,9 +7,7 @@
 #include "stepping/impact.h"
 
 #include <math.h>
-#include <stdlib.h>
 
-#include "base/memory.h"
 #include "motion/fast_pairs.h"
 
 /* Steps ahead in which a gap may close. */
@@ -18,23 +16,11 @@ static const double ahead = 3.0;
 trb_status trb_impacts_create(const trb_model *m, trb_impacts *impacts, trb_message *message)
 {
   const size_t n = (size_t)m->n_rollers;
-  impacts->speed = trb_zeros(n + TRB_MOST_PAIRS, sizeof *impacts->speed);
-  impacts->factor = trb_zeros(n + 1, sizeof *impacts->factor);
-  impacts->bodies = trb_zeros(TRB_MOST_BODIES, sizeof *impacts->bodies);
-  if (impacts->speed == NULL || impacts->factor == NULL || impacts->bodies == NULL) {
-    trb_impacts_free(impacts);
-    return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the impacts of %d rollers", m->n_rollers);
-  }
+  impacts->speed = trb_memory_zeros(&impacts->memory, n + TRB_MOST_PAIRS, sizeof *impacts->speed);
+  impacts->factor = trb_memory_zeros(&impacts->memory, n + 1, sizeof *impacts->factor);
+  if (impacts->memory.lacks) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the impacts of %d rollers", m->n_rollers);
   trb_impacts_forget(m, impacts);
   return TRB_OK;
-}
-
-void trb_impacts_free(trb_impacts *impacts)
-{
-  free(impacts->speed);
-  free(impacts->factor);
-  free(impacts->bodies);
-  *impacts = (trb_impacts){NULL, NULL, NULL};
 }
 
 void trb_impacts_forget(const trb_model *m, trb_impacts *impacts)

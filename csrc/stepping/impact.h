@@ -8,13 +8,14 @@
 typedef struct trb_impacts {
   /* of each roller relative to the body that it hits: when they met, or now if they are about to, m/s; INFINITY: they are apart. Then the
    * same for each pair without a roller, by its number in the system */
-  double      *speed;
-  double      *factor; /* of the tolerances: one for each roller, then that of the hub */
-  trb_body_at *bodies; /* scratch */
+  double     *speed;
+  double     *factor;                  /* of the tolerances: one for each roller, then that of the hub */
+  trb_body_at bodies[TRB_MOST_BODIES]; /* scratch */
+  trb_memory  memory;                  /* of all arrays */
 } trb_impacts;
 
+/* Arrays of impacts that are all zero before; they are freed with their memory. */
 trb_status trb_impacts_create(const trb_model *m, trb_impacts *impacts, trb_message *message);
-void       trb_impacts_free(trb_impacts *impacts);
 void       trb_impacts_forget(const trb_model *m, trb_impacts *impacts);
 /* How exactly impacts are followed. */
 typedef struct trb_impact_measure {

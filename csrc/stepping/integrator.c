@@ -13,12 +13,15 @@ const trb_setting_info trb_setting_table[TRB_N_SETTINGS] = {
 const trb_integrator_kind *const trb_integrator_kinds[] = {&trb_integrator_bdf, &trb_integrator_erk, &trb_integrator_multirate};
 const int                        trb_n_integrator_kinds = (int)(sizeof trb_integrator_kinds / sizeof trb_integrator_kinds[0]);
 
+/* Absolute tolerances of velocities are at most this times the relative tolerance times the mean rolling speed. */
+static const double slow_share = 10.0;
+
 /* Share of a velocity's absolute tolerance that holds at a speed of the shaft relative to the outer ring: no more than a share of the rolling speed, so that slow
  * rotation, whose slip is a small share of a small speed, is followed as exactly as fast rotation. */
 static double speed_share(const trb_integrator *it, const trb_model *m, double speed)
 {
   const double rolling = 0.5 * m->params.roller_diameter * fabs(m->geometry.roller_spin_ratio * speed);
-  return trb_min(1.0, it->settings.slow_share * it->settings.rtol * trb_max(rolling, m->params.speed_floor) / it->settings.atol_velocity);
+  return trb_min(1.0, slow_share * it->settings.rtol * trb_max(rolling, m->params.speed_floor) / it->settings.atol_velocity);
 }
 
 /* Tolerances of the entries from one on, which are the coordinates of a body of a system. */
@@ -60,6 +63,16 @@ int trb_integrator_is_driven(const trb_integrator *it)
   int driven = 0;
   for (int k = 0; k < it->assembly->n; k++) driven |= it->members[k].motion->n > 1;
   return driven;
+}
+
+void trb_integrator_look(trb_integrator *it, int member, double step, const int *chosen, int n)
+{
+  trb_member              *m = &it->members[member];
+  const trb_impact_measure measure = {.share = it->settings.impact_share,
+                                      .least = it->settings.impact_least,
+                                      .velocity = it->settings.atol_velocity,
+                                      .position = it->settings.atol_position};
+  trb_impacts_look(&m->impacts, m->dynamics, m->motion, it->time, it->y, step, &measure, chosen, n);
 }
 
 double trb_integrator_stop(const trb_integrator *it)

@@ -14,16 +14,9 @@
   X(atol_velocity,  3e-4,  1e-14, 10,   "tolerance of velocities, m/s") \
   X(atol_spin,      3e-2,  1e-12, 1e3,  "tolerance of angular velocities, rad/s") \
   X(max_order,      2,     1,     5,    "highest order of BDF") \
-  X(erk_order,      5,     2,     8,    "order of the explicit method") \
   X(rings_age,      2e-2,  0,     1e3,  "bearing time after which the part of the Jacobian from raceways and ribs is computed again, s") \
   X(rings_share,    0.1,   0,     1,    "share of a step's tolerance by which forces of raceways and ribs may be wrong between exact evaluations") \
-  X(jacobian_every, 10,    1,     1e6,  "most steps between evaluations of the part of the Jacobian from pockets") \
-  X(setup_every,    20,    1,     1e6,  "most steps between factorisations") \
   X(newton_share,   0.25,  1e-6,  1,    "share of the step's tolerance to which the equations of a step must hold") \
-  X(newton_iterations, 6,  2,     12,   "most iterations of Newton's method before it is given up") \
-  X(margin_share,   0.5,   0,     0.9,  "share of a contact's interference or gap that may be used up while a tangent is followed") \
-  X(slip_share,     3e-3,  0,     0.1,  "share of the mean rolling speed by which a roller's slip may change while a tangent is followed") \
-  X(slow_share,     10,    1e-3,  1e6,  "absolute tolerances of velocities are at most this times rtol times the mean rolling speed") \
   X(impact_share,   0.03,  1e-4,  1e3,  "share of an impact's speed and interference that roller and cage may be off in a step") \
   X(impact_least,   4e-3,  1e-6,  1,    "smallest factor of their absolute tolerances for that") \
   X(max_step,       1e-3,  1e-12, 1e3,  "largest step, s") \
@@ -107,6 +100,9 @@ struct trb_integrator {
   void                      *self;     /* of the kind */
 };
 
+/* Steps, at most, between factorisations, and between evaluations of the part of the Jacobian from pockets. */
+enum { TRB_SETUP_EVERY = 20, TRB_JACOBIAN_EVERY = 10 };
+
 /* A time later than the end of any run, s. */
 #define TRB_NEVER 1e30
 
@@ -121,6 +117,8 @@ void trb_integrator_set_tolerances(trb_integrator *it);
 double trb_integrator_n_bodies(const trb_integrator *it);
 /* Whether anything is prescribed that changes with time. */
 int trb_integrator_is_driven(const trb_integrator *it);
+/* Factors of a bearing's tolerances for a step of a length, where n of its rollers (ascending) may hit something (stepping/impact.h). */
+void trb_integrator_look(trb_integrator *it, int member, double step, const int *chosen, int n);
 /* Where the next step must end at the latest, and how long it may be, for what is prescribed of all bearings (motion/ring_motion.h). */
 double trb_integrator_stop(const trb_integrator *it);
 double trb_integrator_longest_step(const trb_integrator *it);

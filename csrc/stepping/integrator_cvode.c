@@ -40,8 +40,8 @@ static int rates(sunrealtype time, N_Vector y, N_Vector out, void *data)
                                          .kernels = factors->kernels,
                                          .gamma = factors->gamma,
                                          .share = it->settings.rings_share,
-                                         .margin_share = it->settings.margin_share,
-                                         .slip_share = it->settings.slip_share};
+                                         .margin_share = trb_margin_share,
+                                         .slip_share = trb_slip_share};
     trb_tangents_derivative(self->jacobians[k]->tangents, it->members[k].dynamics, &measure, time, N_VGetArrayPointer(y), to);
   }
   return trb_integrator_finite(it, to) ? 0 : 1;
@@ -115,9 +115,9 @@ static trb_status configure(trb_integrator *it, trb_message *message)
   CHECK(CVodeSetMaxStep(self->memory, it->settings.max_step));
   CHECK(CVodeSetMaxErrTestFails(self->memory, 15));
   CHECK(CVodeSetMaxConvFails(self->memory, 25));
-  CHECK(CVodeSetLSetupFrequency(self->memory, (long)it->settings.setup_every));
+  CHECK(CVodeSetLSetupFrequency(self->memory, TRB_SETUP_EVERY));
   CHECK(CVodeSetNonlinConvCoef(self->memory, it->settings.newton_share));
-  CHECK(CVodeSetJacEvalFrequency(self->memory, (long)it->settings.jacobian_every));
+  CHECK(CVodeSetJacEvalFrequency(self->memory, TRB_JACOBIAN_EVERY));
   if (it->settings.first_step > 0.0) CHECK(CVodeSetInitStep(self->memory, it->settings.first_step));
   return TRB_OK;
 }
@@ -138,9 +138,7 @@ static trb_status bdf_create(trb_integrator *it, trb_message *message)
   if (self->y != NULL) self->scratch = N_VClone(self->y);
   self->matrix = trb_arrow_matrix(n_rollers, hub_width, self->sundials.context);
   self->solver = trb_arrow_linear_solver(it->assembly, variant, self->sundials.context);
-  if (self->y != NULL)
-    self->newton =
-        trb_newton_solver((int)it->settings.newton_iterations, self->y, it->n_main, n_rollers, TRB_ROLLER_SIZE, self->sundials.context);
+  if (self->y != NULL) self->newton = trb_newton_solver(self->y, it->n_main, n_rollers, TRB_ROLLER_SIZE, self->sundials.context);
   self->memory = CVodeCreate(CV_BDF, self->sundials.context);
   if (!self->y || !self->scratch || !self->matrix || !self->solver || !self->newton || !self->memory)
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the integrator");
@@ -215,14 +213,9 @@ static trb_status bdf_step(trb_integrator *it, trb_message *message)
   if (trb_integrator_is_driven(it)) CHECK(CVodeSetStopTime(self->memory, trb_integrator_stop(it)));
   CHECK(CVodeSetMaxStep(self->memory, trb_integrator_longest_step(it)));
   CHECK(CVodeGetCurrentStep(self->memory, &step));
-  const trb_impact_measure measure = {.share = it->settings.impact_share,
-                                      .least = it->settings.impact_least,
-                                      .velocity = it->settings.atol_velocity,
-                                      .position = it->settings.atol_position};
   for (int k = 0; k < it->assembly->n; k++) {
-    trb_member         *member = &it->members[k];
-    const trb_dynamics *d = member->dynamics;
-    trb_impacts_look(&member->impacts, d, member->motion, it->time, it->y, step, &measure, d->everyone, d->model->n_rollers);
+    const trb_dynamics *d = it->members[k].dynamics;
+    trb_integrator_look(it, k, step, d->everyone, d->model->n_rollers);
   }
   const int flag = CVode(self->memory, it->time + 1.0, self->y, &reached, CV_ONE_STEP);
   if (flag < 0) return trb_fail(message, TRB_ERR_STEP, "CVODE stopped (%d): %s", flag, self->sundials.text);

@@ -9,7 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "stepping/multirate.h"
 #include "motion/fast_pairs.h"
 
@@ -156,17 +155,6 @@ static void read(const trb_integrator *it, double time, double *y)
   }
 }
 
-static void look(trb_integrator *it, double step)
-{
-  const trb_multirate     *s = it->self;
-  trb_member              *member = &it->members[0];
-  const trb_impact_measure measure = {.share = it->settings.impact_share,
-                                      .least = it->settings.impact_least,
-                                      .velocity = it->settings.atol_velocity,
-                                      .position = it->settings.atol_position};
-  trb_impacts_look(&member->impacts, member->dynamics, member->motion, it->time, it->y, step, &measure, s->together, s->n_together);
-}
-
 static trb_status multirate_step(trb_integrator *it, trb_message *message)
 {
   trb_multirate *s = it->self;
@@ -181,7 +169,7 @@ static trb_status multirate_step(trb_integrator *it, trb_message *message)
     if (status != TRB_OK) return status;
     const double step = end - it->time;
     set_step(s, &team, step);
-    look(it, step);
+    trb_integrator_look(it, 0, step, s->together, s->n_together);
     const trb_outcome outcome = trb_multirate_try(it, &team, end, &error);
     if (outcome != TRB_STEP_GOOD) {
       status = shorten(it, &team, outcome, error, message);
@@ -279,16 +267,15 @@ static trb_status multirate_create(trb_integrator *it, trb_message *message)
   s->stride = (size_t)s->n_rollers * TRB_NR + (size_t)width + TRB_NP;
   s->count.smallest_step = (double)INFINITY;
   s->count.last_order = 2.0;
-  s->movers = trb_zeros((size_t)s->n_rollers + 1, sizeof *s->movers);
-  s->together = calloc((size_t)s->n_rollers, sizeof *s->together);
-  s->y = trb_zeros(n, sizeof *s->y);
-  s->rates = trb_zeros(n, sizeof *s->rates);
-  s->error = trb_zeros(n, sizeof *s->error);
-  s->packed = trb_zeros(s->stride, sizeof *s->packed);
-  s->weight = trb_zeros(s->stride, sizeof *s->weight);
-  s->taken = trb_zeros(s->stride * TRB_NEWTON_MOST, sizeof *s->taken);
-  if (!s->movers || !s->together || !s->y || !s->rates || !s->error || !s->packed || !s->weight || !s->taken)
-    return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the integrator");
+  s->movers = trb_memory_zeros(&s->memory, (size_t)s->n_rollers + 1, sizeof *s->movers);
+  s->together = trb_memory_zeros(&s->memory, (size_t)s->n_rollers, sizeof *s->together);
+  s->y = trb_memory_zeros(&s->memory, n, sizeof *s->y);
+  s->rates = trb_memory_zeros(&s->memory, n, sizeof *s->rates);
+  s->error = trb_memory_zeros(&s->memory, n, sizeof *s->error);
+  s->packed = trb_memory_zeros(&s->memory, s->stride, sizeof *s->packed);
+  s->weight = trb_memory_zeros(&s->memory, s->stride, sizeof *s->weight);
+  s->taken = trb_memory_zeros(&s->memory, s->stride * TRB_NEWTON_MOST, sizeof *s->taken);
+  if (s->memory.lacks) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the integrator");
   const int  variant = it->members[0].dynamics->work->variant, first = trb_state_roller(system, 0);
   trb_status status = trb_jacobian_create(system, it->members[0].motion, it->variant, &s->jacobian, message);
   if (status == TRB_OK) status = trb_arrow_create(s->n_rollers, width, &s->arrow, message);
@@ -298,8 +285,8 @@ static trb_status multirate_create(trb_integrator *it, trb_message *message)
                                      .scale = it->scale + first,
                                      .kernels = s->factors->kernels,
                                      .share = it->settings.rings_share,
-                                     .margin_share = it->settings.margin_share,
-                                     .slip_share = it->settings.slip_share};
+                                     .margin_share = trb_margin_share,
+                                     .slip_share = trb_slip_share};
   s->tangents = trb_tangents_open(s->jacobian->tangents, &s->measure);
   return multirate_restart(it, message);
 }
@@ -311,14 +298,7 @@ static void multirate_free(trb_integrator *it)
   trb_jacobian_free(s->jacobian);
   trb_arrow_free(s->arrow);
   trb_arrow_factors_free(s->factors);
-  free(s->movers);
-  free(s->together);
-  free(s->y);
-  free(s->rates);
-  free(s->error);
-  free(s->packed);
-  free(s->weight);
-  free(s->taken);
+  trb_memory_free(&s->memory);
   free(s);
   it->self = NULL;
 }

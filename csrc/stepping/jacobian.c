@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "stepping/coupling.h"
 #include "stepping/spacer_blocks.h"
 
@@ -16,18 +15,16 @@ trb_status trb_jacobian_create(const trb_system *system, const trb_motion *motio
   trb_status status = trb_dynamics_create(system, motion, variant, &j->d, message);
   if (status == TRB_OK) {
     const size_t width = (size_t)system->layout.hub_width;
-    j->moved = calloc((size_t)trb_state_size(system), sizeof *j->moved);
-    j->rates = trb_zeros(3 * width, sizeof *j->rates);
-    j->changes = trb_zeros(width, sizeof *j->changes);
-    j->response = trb_zeros(6 * width, sizeof *j->response);
-    j->with = trb_zeros(width, sizeof *j->with);
-    j->renewed = calloc((size_t)system->model->n_rollers, sizeof *j->renewed);
-    if (j->moved == NULL || j->rates == NULL || j->changes == NULL || j->response == NULL || j->with == NULL || j->renewed == NULL)
-      status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for the Jacobian");
+    j->moved = trb_memory_zeros(&j->memory, (size_t)trb_state_size(system), sizeof *j->moved);
+    j->rates = trb_memory_zeros(&j->memory, 3 * width, sizeof *j->rates);
+    j->changes = trb_memory_zeros(&j->memory, width, sizeof *j->changes);
+    j->response = trb_memory_zeros(&j->memory, 6 * width, sizeof *j->response);
+    j->with = trb_memory_zeros(&j->memory, width, sizeof *j->with);
+    j->renewed = trb_memory_zeros(&j->memory, (size_t)system->model->n_rollers, sizeof *j->renewed);
+    for (int b = 0; b < system->n_bodies; b++)
+      if (system->bodies[b].modes != NULL) j->modal[b] = trb_modal_create(&j->memory, &system->bodies[b], system->layout.hub_width);
+    if (j->memory.lacks) status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for the Jacobian");
     else status = trb_tangents_create(system, &j->tangents, message);
-    for (int b = 0; b < system->n_bodies && status == TRB_OK; b++)
-      if (system->bodies[b].modes != NULL && (j->modal[b] = trb_modal_create(&system->bodies[b], system->layout.hub_width)) == NULL)
-        status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for the Jacobian");
   }
   if (status != TRB_OK) {
     trb_jacobian_free(j);
@@ -42,13 +39,7 @@ void trb_jacobian_free(trb_jacobian *jacobian)
   if (jacobian == NULL) return;
   trb_dynamics_free(jacobian->d);
   trb_tangents_free(jacobian->tangents);
-  free(jacobian->moved);
-  free(jacobian->rates);
-  free(jacobian->changes);
-  free(jacobian->response);
-  free(jacobian->with);
-  free(jacobian->renewed);
-  for (int b = 0; b < TRB_MOST_BODIES; b++) trb_modal_free(jacobian->modal[b]);
+  trb_memory_free(&jacobian->memory);
   free(jacobian);
 }
 

@@ -1,12 +1,7 @@
-/* Jacobian of the right-hand side (docs/theory/numerics.md#jacobian).
- *
- * It is the sum of two parts that change at different rates. The part of the slow pairs is what they and inertia do to each roller. It
- * changes slowly and is computed by differences: one evaluation of these pairs for each coordinate, with all rollers moved at once. It is
- * reused until it is old, or until a second Jacobian is asked for within one step; that of single rollers until Newton's method finds it
- * poor, or has corrected it often. The part of the fast pairs changes with each impact.
- * Only rollers that touch have it, and its slopes are computed in closed form together with the forces. Pairs without a roller are part of
- * the block of the hub, by differences. A ring with coordinates has borders to all rollers: they are the slopes that the tangents have with
- * the ring's place and motion, times what each of its coordinates does to these. */
+/* Jacobian of the right-hand side (docs/theory/numerics.md#jacobian). The part of the slow pairs and of inertia is computed by differences, all
+ * rollers moved at once, and kept until it is old, or poor for single rollers. The part of the fast pairs, which changes with each impact, comes in
+ * closed form with their forces, for rollers that touch alone. Pairs without a roller are part of the block of the hub, by differences. A ring
+ * with coordinates has borders to all rollers: the slopes that tangents have with its place and motion, times what its coordinates do to these. */
 #ifndef TRB_STEPPING_JACOBIAN_H
 #define TRB_STEPPING_JACOBIAN_H
 
@@ -26,6 +21,7 @@ typedef struct trb_jacobian {
   int       *renewed;                /* rollers whose slopes are taken again at the next fill, ascending */
   int        n_renewed;
   long       rings_evaluations;
+  trb_memory memory; /* of all arrays */
 } trb_jacobian;
 
 trb_status trb_jacobian_create(const trb_system *system, const trb_motion *motion, const char *variant, trb_jacobian **jacobian,

@@ -1,43 +1,30 @@
 #include "stepping/modal.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
-
-trb_modal *trb_modal_create(const trb_body *body, int hub_width)
+trb_modal *trb_modal_create(trb_memory *memory, const trb_body *body, int hub_width)
 {
   const size_t n = (size_t)body->modes->n, six = 6;
-  trb_modal   *to = calloc(1, sizeof *to);
+  trb_modal   *to = trb_memory_zeros(memory, 1, sizeof *to);
   if (to == NULL) return NULL;
   to->n = (int)n;
   to->room[0] = 4 * six * n + 2 * n * n;
   to->room[1] = (size_t)hub_width * n;
-  to->memory = trb_zeros(to->room[0] + to->room[1], sizeof *to->memory);
-  if (to->memory == NULL) {
-    free(to);
-    return NULL;
-  }
-  to->slopes.place = (trb_wrench *)to->memory;
+  to->rows = trb_memory_zeros(memory, to->room[0], sizeof *to->rows);
+  to->pulls = trb_memory_zeros(memory, to->room[1], sizeof *to->pulls);
+  if (memory->lacks) return NULL;
+  to->slopes.place = (trb_wrench *)to->rows;
   to->slopes.rate = to->slopes.place + n;
   to->slopes.pull_place = (double (*)[6])(to->slopes.rate + n);
   to->slopes.pull_rate = to->slopes.pull_place + n;
   to->slopes.own_place = (double *)(to->slopes.pull_rate + n);
   to->slopes.own_rate = to->slopes.own_place + n * n;
-  to->pulls = to->memory + to->room[0];
   return to;
-}
-
-void trb_modal_free(trb_modal *modal)
-{
-  if (modal == NULL) return;
-  free(modal->memory);
-  free(modal);
 }
 
 void trb_modal_start(trb_modal *modal) { memset(modal->pulls, 0, modal->room[1] * sizeof *modal->pulls); }
 
-void trb_modal_clear(trb_modal *modal) { memset(modal->memory, 0, modal->room[0] * sizeof *modal->memory); }
+void trb_modal_clear(trb_modal *modal) { memset(modal->rows, 0, modal->room[0] * sizeof *modal->rows); }
 
 /* Adds the force on each mode with a motion of the roller. */
 static void pull(const trb_modal *modal, int is_place, const double along[6], double *force)

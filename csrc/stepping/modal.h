@@ -8,16 +8,15 @@
 
 /* Of one body. */
 typedef struct trb_modal {
-  int              n;      /* modes */
-  trb_modal_slopes slopes; /* of the roller under way */
-  double          *pulls;  /* [entry of the hub][mode]: slopes of the force on the mode, summed over rollers */
-  double          *memory;
+  int              n;       /* modes */
+  trb_modal_slopes slopes;  /* of the roller under way */
+  double          *pulls;   /* [entry of the hub][mode]: slopes of the force on the mode, summed over rollers */
+  double          *rows;    /* of the slopes */
   size_t           room[2]; /* entries of the slopes, and of the pulls */
 } trb_modal;
 
-/* NULL: out of memory. */
-trb_modal *trb_modal_create(const trb_body *body, int hub_width);
-void       trb_modal_free(trb_modal *modal);
+/* In a memory, with which it is freed; NULL: out of memory. */
+trb_modal *trb_modal_create(trb_memory *memory, const trb_body *body, int hub_width);
 /* Before the rollers of a Jacobian. */
 void trb_modal_start(trb_modal *modal);
 /* After each roller that touches the body: slopes are added to zeros. */

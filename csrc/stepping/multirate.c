@@ -77,7 +77,7 @@ static int factor(trb_multirate *s, const trb_team *team, double gamma)
 static int prepare_hub(trb_integrator *it, const trb_team *team, double end, double gamma, int fresh)
 {
   trb_multirate *s = it->self;
-  int            fill = fresh || !s->has_jacobian || s->jacobian_age >= (int)it->settings.jacobian_every;
+  int            fill = fresh || !s->has_jacobian || s->jacobian_age >= TRB_JACOBIAN_EVERY;
   for (int k = 0; k < team->n; k++) {
     if (!wants_slopes(it, team->rollers[k], end, fresh)) continue;
     trb_jacobian_renew(s->jacobian, team->rollers[k]);
@@ -91,7 +91,7 @@ static int prepare_hub(trb_integrator *it, const trb_team *team, double end, dou
     s->has_jacobian = 1;
     s->jacobian_age = 0;
   }
-  const int other = fabs(gamma / s->gamma - 1.0) > gamma_change || s->factors_age >= (int)it->settings.setup_every;
+  const int other = fabs(gamma / s->gamma - 1.0) > gamma_change || s->factors_age >= TRB_SETUP_EVERY;
   return fill || !s->has_factors || other ? factor(s, team, gamma) : 1;
 }
 
@@ -105,7 +105,7 @@ static int prepare_alone(trb_integrator *it, int roller, double end, double gamm
     note_slopes(mover, end);
     mover->gamma = 0.0;
   }
-  if (mover->gamma > 0.0 && fabs(gamma / mover->gamma - 1.0) <= gamma_change && mover->age < (int)it->settings.setup_every) return 1;
+  if (mover->gamma > 0.0 && fabs(gamma / mover->gamma - 1.0) <= gamma_change && mover->age < TRB_SETUP_EVERY) return 1;
   trb_arrow_block block = {0};
   for (int c = 0; c < TRB_NR; c++) memcpy(block.own[c], trb_tangents_column(s->jacobian->tangents, roller, c), TRB_NR * sizeof(double));
   s->count.linear_setups++;
@@ -175,11 +175,10 @@ static void integrate(trb_multirate *s, const trb_team *team, double gamma)
 static int iterate(trb_integrator *it, const trb_team *team, double end, double gamma, double tolerance, double failing, int exact)
 {
   trb_multirate *s = it->self;
-  const int      most = (int)it->settings.newton_iterations,
-                 size = team->n * TRB_NR + (team->with_hub ? s->movers[s->n_rollers].course.main : 0);
+  const int      size = team->n * TRB_NR + (team->with_hub ? s->movers[s->n_rollers].course.main : 0);
   double         first = INFINITY, before = 0.0, square[TRB_NEWTON_MOST];
   for (int k = 0; k < trb_team_size(team); k++) memset(trb_team_mover(s, team, k)->e, 0, TRB_NP * sizeof(double));
-  for (int m = 0; m < most; m++) {
+  for (int m = 0; m < TRB_NEWTON_MOST; m++) {
     const double off = measure(it, team, end, gamma, exact);
     if (!isfinite(off)) return 0;
     for (int k = 0; k < team->n && m == 1 && off > trb_poor * before && off > trb_negligible * tolerance; k++)

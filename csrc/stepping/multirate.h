@@ -50,6 +50,7 @@ typedef struct trb_multirate {
   double             *packed, *weight, *taken;   /* scratch of Newton's method: the team's coordinates one after the other */
   size_t              stride;                    /* between corrections that were taken */
   trb_statistics      count;
+  trb_memory          memory; /* of all arrays */
 } trb_multirate;
 
 /* A team: n rollers, and the hub or not. */

@@ -1,32 +1,11 @@
-/* Newton's method with a test of the equations themselves (docs/theory/numerics.md#newtons-method).
+/* Newton's method with a test of the equations themselves (docs/theory/numerics.md#newtons-method, which says why).
  *
- * An implicit step solves y = a + gamma f(y). The usual test looks at the size of the last correction -M^-1 F, with F = y - a - gamma f(y)
- * and M = 1 - gamma J. In a rolling contact M holds slopes of friction of 1e5 to 1e9 1/s: where the true slope is smaller than the one
- * in M (a roller that slips, oil that yields), corrections are far below every tolerance although the equations are not fulfilled at
- * all. Such a step is not a step of the method; the error test does not see it, and the forces of the next steps make energy.
- *
- * Here a step is accepted only if F itself, before the last correction, is below the tolerance of Newton's method. F is what the step
- * lacks in velocity because forces and accelerations do not balance. For forces that do not increase with speed, |error of y| <= |F|
- * holds however stiff they are (Dahlquist 1979; Hairer and Wanner, Solving ODEs II, IV.12), so nothing else has to be known about J.
- * Where friction falls with slip (boundary friction beyond 1 %) the bound is weaker by the step times that slope.
- *
- * F must also have fallen by a correction, or be negligible. Else a slope that is too large leaves nearly all of it in every step: steps
- * of nanoseconds then carry the same error on for ever, each of them within the tolerance.
- *
- * What a first correction leaves of F is measured. Where the share is large, slopes are taken again: of those bodies, mostly one or two, whose
- * equations lack so much. Where it is small F is evaluated again all the same: the integrals of losses and works have no slopes, so that they
- * hold only where F was evaluated last.
- *
- * Corrections are improved by Broyden's update of M^-1 from those that went before in the same step (Kelley, Solving Nonlinear Equations
- * with Newton's Method, 2003, section 4.2): a slope that is too large or too small along the way is found after one evaluation more, and
- * the method gets away from two points between which the plain one would jump for ever.
- *
- * Where an oil yields or friction turns round within micrometres a second, F is nearly a step of the sliding speed, and a slope taken beside
- * it is far too small: corrections go too far, to and fro. With several loaded rollers at such places one update for all of them does not
- * help. The step would be shortened until forces hardly matter in it, and stay so. Where solves fail time and again the method therefore
- * takes the bodies one by one: each has an update of its own, and of the points after the first correction the one at which its equations
- * lacked least is kept. The integrals of losses, works and spin, which no force reads, keep the plain correction: it solves their equations.
- * If the iterations end without a solution, slopes are taken again at these points, and the next iterations begin there. */
+ * An implicit step solves F = y - a - gamma f(y) = 0 with corrections -M^-1 F, M = 1 - gamma J. Where slopes in M are too large, corrections are
+ * small although F is not: so a step is accepted only if F itself, before the last correction, is below the tolerance and has fallen by a
+ * correction. What a first correction leaves says which bodies' slopes are taken again. Corrections are improved by Broyden's update from those
+ * that went before in the same step. Where solves fail time and again each body has an update of its own, and keeps the point at which its
+ * equations lacked least; if the iterations end without a solution, slopes are taken again there. The integrals of losses, works and spin, which
+ * no force reads, keep the plain correction. */
 #include "stepping/newton.h"
 
 #include <math.h>
@@ -48,24 +27,25 @@ typedef struct newton {
   SUNNonlinSolSysFn    residual;
   SUNNonlinSolLSetupFn setup;
   SUNNonlinSolLSolveFn solve;
-  N_Vector             delta;   /* residual, then correction */
-  double              *taken;   /* corrections taken in this step, one after the other */
-  double              *square;  /* body by body: of their weighted norms */
-  double *best, *best_square;   /* body by body: the point at which its equations lacked least, and their weighted square there */
-  int     n, n_main, most;      /* entries; those before the integrals that no force reads; iterations allowed */
-  int     n_bodies, size;       /* bodies but the last one, and their entries; what is left before the integrals is the last one */
-  double  off;                  /* what the equations lacked before the last correction */
-  int     iterations, failures; /* of the last solve */
-  int     troubled;             /* whether the last solve failed */
-  int     renewing;             /* slopes are taken again within a solve */
-  int     has_best;             /* whether the last iterations came to a point after their first correction */
-  int     pause, paused;        /* failed solves for which that is left out, and those that went by */
-  double  failing;              /* share of solves that failed, the last ones counting most */
-  double *left;    /* body by body: weighted squares of what its equations lacked after the last correction that left too much */
-  int     is_poor; /* whether a correction left too much */
-  int    *poor;    /* body by body: whether its slopes are to be taken again for that */
-  long   *renewed; /* body by body: the solve at which they last were */
-  long    solves;  /* so far */
+  N_Vector             delta;      /* residual, then correction */
+  double              *taken;      /* corrections taken in this step, one after the other */
+  double              *square;     /* body by body: of their weighted norms */
+  double    *best, *best_square;   /* body by body: the point at which its equations lacked least, and their weighted square there */
+  int        n, n_main;            /* entries; those before the integrals that no force reads */
+  int        n_bodies, size;       /* bodies but the last one, and their entries; what is left before the integrals is the last one */
+  double     off;                  /* what the equations lacked before the last correction */
+  int        iterations, failures; /* of the last solve */
+  int        troubled;             /* whether the last solve failed */
+  int        renewing;             /* slopes are taken again within a solve */
+  int        has_best;             /* whether the last iterations came to a point after their first correction */
+  int        pause, paused;        /* failed solves for which that is left out, and those that went by */
+  double     failing;              /* share of solves that failed, the last ones counting most */
+  double    *left;    /* body by body: weighted squares of what its equations lacked after the last correction that left too much */
+  int        is_poor; /* whether a correction left too much */
+  int       *poor;    /* body by body: whether its slopes are to be taken again for that */
+  long      *renewed; /* body by body: the solve at which they last were */
+  long       solves;  /* so far */
+  trb_memory memory;  /* of all arrays */
 } newton;
 
 /* Entries of a body. */
@@ -77,12 +57,6 @@ static SUNNonlinearSolver_Type type_of(SUNNonlinearSolver solver)
 {
   (void)solver;
   return SUNNONLINEARSOLVER_ROOTFIND;
-}
-
-static int initialize(SUNNonlinearSolver solver)
-{
-  (void)solver;
-  return 0;
 }
 
 static part part_of(const newton *self, int body)
@@ -160,7 +134,7 @@ static int iterate(newton *self, N_Vector correction, N_Vector weights, double t
     for (int body = 0; body <= self->n_bodies; body++) self->best_square[body] = (double)INFINITY;
     memcpy(self->best, N_VGetArrayPointer(correction), (size_t)self->n * sizeof *self->best);
   }
-  for (int m = 0; m < self->most; m++) {
+  for (int m = 0; m < TRB_NEWTON_MOST; m++) {
     if (m > 0) {
       const int flag = self->residual(correction, self->delta, memory);
       if (flag != 0) return flag;
@@ -244,13 +218,7 @@ static int free_solver(SUNNonlinearSolver solver)
   newton *self = solver->content;
   if (self != NULL) {
     if (self->delta != NULL) N_VDestroy(self->delta);
-    free(self->taken);
-    free(self->square);
-    free(self->best);
-    free(self->best_square);
-    free(self->left);
-    free(self->poor);
-    free(self->renewed);
+    trb_memory_free(&self->memory);
     free(self);
   }
   solver->content = NULL;
@@ -273,21 +241,6 @@ static int set_setup(SUNNonlinearSolver solver, SUNNonlinSolLSetupFn function)
 static int set_solve(SUNNonlinearSolver solver, SUNNonlinSolLSolveFn function)
 {
   ((newton *)solver->content)->solve = function;
-  return 0;
-}
-
-static int set_test(SUNNonlinearSolver solver, SUNNonlinSolConvTestFn function, void *data)
-{
-  (void)solver;
-  (void)function;
-  (void)data;
-  return 0;
-}
-
-static int set_iterations(SUNNonlinearSolver solver, int n)
-{
-  (void)solver;
-  (void)n;
   return 0;
 }
 
@@ -332,7 +285,7 @@ void trb_newton_forget(SUNNonlinearSolver solver)
   memset(self->renewed, 0, (size_t)(self->n_bodies + 1) * sizeof *self->renewed);
 }
 
-SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, int n_main, int n_bodies, int size, SUNContext context)
+SUNNonlinearSolver trb_newton_solver(N_Vector like, int n_main, int n_bodies, int size, SUNContext context)
 {
   SUNNonlinearSolver solver = trb_sundials_has_room(1) ? SUNNonlinSolNewEmpty(context) : NULL;
   if (solver == NULL) return NULL;
@@ -340,33 +293,29 @@ SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, int n_ma
   solver->content = self;
   if (self != NULL) {
     self->n = (int)N_VGetLength(like);
-    self->most = max_iterations < TRB_NEWTON_MOST ? max_iterations : TRB_NEWTON_MOST;
     self->delta = N_VClone(like);
     self->n_main = n_main;
     self->n_bodies = n_bodies;
     self->size = size;
-    self->taken = calloc((size_t)self->n * (size_t)self->most, sizeof(double));
-    self->square = calloc((size_t)(n_bodies + 1) * TRB_NEWTON_MOST, sizeof(double));
-    self->best = calloc((size_t)self->n, sizeof(double));
-    self->best_square = calloc((size_t)n_bodies + 1, sizeof(double));
-    self->left = calloc((size_t)n_bodies + 1, sizeof *self->left);
-    self->poor = calloc((size_t)n_bodies + 1, sizeof *self->poor);
-    self->renewed = calloc((size_t)n_bodies + 1, sizeof *self->renewed);
+    const size_t n = (size_t)self->n, bodies = (size_t)n_bodies + 1;
+    self->taken = trb_memory_zeros(&self->memory, n * TRB_NEWTON_MOST, sizeof(double));
+    self->square = trb_memory_zeros(&self->memory, bodies * TRB_NEWTON_MOST, sizeof(double));
+    self->best = trb_memory_zeros(&self->memory, n, sizeof(double));
+    self->best_square = trb_memory_zeros(&self->memory, bodies, sizeof(double));
+    self->left = trb_memory_zeros(&self->memory, bodies, sizeof *self->left);
+    self->poor = trb_memory_zeros(&self->memory, bodies, sizeof *self->poor);
+    self->renewed = trb_memory_zeros(&self->memory, bodies, sizeof *self->renewed);
   }
-  if (self == NULL || !self->delta || !self->taken || !self->square || !self->best || !self->best_square || !self->left || !self->poor ||
-      !self->renewed) {
+  if (self == NULL || self->delta == NULL || self->memory.lacks) {
     (void)free_solver(solver);
     return NULL;
   }
   solver->ops->gettype = type_of;
-  solver->ops->initialize = initialize;
   solver->ops->solve = solve;
   solver->ops->free = free_solver;
   solver->ops->setsysfn = set_residual;
   solver->ops->setlsetupfn = set_setup;
   solver->ops->setlsolvefn = set_solve;
-  solver->ops->setctestfn = set_test;
-  solver->ops->setmaxiters = set_iterations;
   solver->ops->getnumiters = get_iterations;
   solver->ops->getnumconvfails = get_failures;
   return solver;

@@ -8,7 +8,7 @@
 
 /* like: a vector of the state's length. Its first n_main entries are n_bodies bodies of the same size and one more, which has what is left
  * of them. The entries after those are integrals that no force reads. NULL if out of memory. */
-SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, int n_main, int n_bodies, int size, SUNContext context);
+SUNNonlinearSolver trb_newton_solver(N_Vector like, int n_main, int n_bodies, int size, SUNContext context);
 
 /* Whether solves fail: the last one that was not broken off by an evaluation or a Jacobian that failed, or more than a tenth of those before. */
 int trb_newton_troubled(SUNNonlinearSolver solver);

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { TRB_NEWTON_MOST = 12 }; /* iterations at most */
+enum { TRB_NEWTON_MOST = 6 }; /* iterations at most */
 
 /* Largest share of the last correction that the next one may repeat before it is prolonged no further: by 1/(1 - most_kept) at most. */
 static const double trb_most_kept = 0.95;

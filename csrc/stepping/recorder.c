@@ -35,6 +35,7 @@ struct trb_recorder {
   trb_lock                lock; /* of waiting, and of closing */
   trb_condition           has_work, has_room;
   trb_thread              thread;
+  trb_memory              memory; /* of the queue */
 };
 
 int trb_record_parts_length(const trb_record_parts *parts)
@@ -144,10 +145,7 @@ void trb_recorder_record(trb_recorder *r, double time, const double *y, double *
 
 static void release(trb_recorder *r)
 {
-  for (int i = 0; i < PLACES; i++) {
-    free(r->queue[i].y);
-    free(r->queue[i].apart);
-  }
+  trb_memory_free(&r->memory);
   free(r);
 }
 
@@ -158,13 +156,11 @@ trb_recorder *trb_recorder_open(const trb_record_parts *parts, int n, int n_stat
   r->parts = parts;
   r->n = n;
   r->n_state = (size_t)n_state;
-  int complete = 1;
   for (int i = 0; i < PLACES; i++) {
-    r->queue[i].y = calloc(r->n_state, sizeof(double));
-    r->queue[i].apart = calloc((size_t)parts[0].onlooker->system->layout.n_rollers, sizeof(unsigned));
-    complete = complete && r->queue[i].y != NULL && r->queue[i].apart != NULL;
+    r->queue[i].y = trb_memory_zeros(&r->memory, r->n_state, sizeof(double));
+    r->queue[i].apart = trb_memory_zeros(&r->memory, (size_t)parts[0].onlooker->system->layout.n_rollers, sizeof(unsigned));
   }
-  if (complete && trb_lock_open(&r->lock) == 0) {
+  if (!r->memory.lacks && trb_lock_open(&r->lock) == 0) {
     if (trb_condition_open(&r->has_work) == 0) {
       if (trb_condition_open(&r->has_room) == 0) {
         if (trb_thread_start(&r->thread, work, r) == 0) return r;

@@ -27,12 +27,8 @@ typedef struct trb_ring_tangent {
   trb_ring_pose   from; /* the ring there, in inertial coordinates */
 } trb_ring_tangent;
 
-/* Tolerances: those of a roller's coordinate of the same kind. */
-int trb_ring_like(int input);
 /* A ring's inputs in R, which is turned against the frame of the ring's pose; or the slopes of inputs, from those of a pose. */
 void trb_ring_inputs(const trb_ring_pose *ring, const trb_drive *drive, double *inputs);
-/* Step of a ring's inputs from the origin; gives the sum of squares of step times per. */
-double trb_ring_step(const trb_ring_tangent *tangent, const double *inputs, double *step);
 /* Moves a ring, as a roller sees it, by one of its inputs; cosine, sine: of the roller's angle in R. */
 void trb_ring_move(trb_ring_pose *ring, int input, double by, double cosine, double sine);
 /* A wrench in R as a reaction, and back. */

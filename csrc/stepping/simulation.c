@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "stepping/vectors.h"
 #include "motion/fast_pairs.h"
 #include "motion/spacer.h"
@@ -24,17 +23,15 @@ static trb_status check_settings(const trb_settings *settings, trb_message *mess
 /* Name of a state entry, for a person, as the text of a message. */
 static void describe(const trb_assembly *assembly, int index, trb_message *out)
 {
-#define TRB_STATE_NAME(name, kind, what) #name " (" what ")",
-  static const char *const roller[TRB_ROLLER_SIZE] = {TRB_ROLLER_STATE(TRB_STATE_NAME)};
-#undef TRB_STATE_NAME
   const trb_system *system = trb_assembly_owner(assembly, index);
   char              of[32] = "";
   if (assembly->n > 1 && system != NULL) (void)snprintf(of, sizeof of, "bearing %d, ", (int)(system - assembly->members) + 1);
   if (index < 0) (void)trb_fail(out, TRB_OK, "no single quantity");
   else if (system == NULL) (void)trb_fail(out, TRB_OK, "spin angle or quadrature %d", index - trb_state_main_size(&assembly->members[0]));
   else if (index < trb_state_hub(system)) {
-    const int own = index - trb_state_roller(system, 0);
-    (void)trb_fail(out, TRB_OK, "%sroller %d, %s", of, own / TRB_ROLLER_SIZE, roller[own % TRB_ROLLER_SIZE]);
+    const int             own = index - trb_state_roller(system, 0);
+    const trb_coordinate *is = &trb_roller_coordinates[own % TRB_ROLLER_SIZE];
+    (void)trb_fail(out, TRB_OK, "%sroller %d, %s (%s)", of, own / TRB_ROLLER_SIZE, is->name, is->text);
   } else {
     int                   coordinate;
     const trb_body       *body = trb_state_body(system, index, &coordinate);
@@ -94,8 +91,8 @@ static trb_status open_member(trb_simulation *s, int k, const trb_motion *motion
   if (status == TRB_OK) status = trb_dynamics_create(system, motion, variant, &parts->onlooker, message);
   if (status == TRB_OK) status = trb_detail_create(system->model, system->pairs, system->n_pairs, &parts->detail, message);
   if (status == TRB_OK) status = trb_impacts_create(system->model, &member->impacts, message);
-  s->apart[k] = calloc((size_t)system->model->n_rollers, sizeof *s->apart[k]);
-  if (status == TRB_OK && s->apart[k] == NULL) status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for a simulation");
+  s->apart[k] = trb_memory_zeros(&s->memory, (size_t)system->model->n_rollers, sizeof *s->apart[k]);
+  if (status == TRB_OK && s->memory.lacks) status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for a simulation");
   return status;
 }
 
@@ -107,11 +104,11 @@ static trb_status open_parts(trb_simulation *s, const trb_motion *const *motions
   it->variant = variant;
   it->n = trb_state_size(first);
   it->n_main = trb_state_main_size(first);
-  it->y = trb_zeros((size_t)it->n + TRB_VECTOR_ROOM, sizeof(double));
-  it->scale = trb_zeros((size_t)it->n, sizeof(double));
-  it->relative = trb_zeros((size_t)it->n, sizeof(double));
-  s->between = trb_zeros((size_t)it->n, sizeof(double));
-  if (!it->y || !it->scale || !it->relative || !s->between) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for a simulation");
+  it->y = trb_memory_zeros(&s->memory, (size_t)it->n + TRB_VECTOR_ROOM, sizeof(double));
+  it->scale = trb_memory_zeros(&s->memory, (size_t)it->n, sizeof(double));
+  it->relative = trb_memory_zeros(&s->memory, (size_t)it->n, sizeof(double));
+  s->between = trb_memory_zeros(&s->memory, (size_t)it->n, sizeof(double));
+  if (s->memory.lacks) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for a simulation");
   trb_status status = TRB_OK;
   for (int k = 0; k < s->assembly.n && status == TRB_OK; k++) status = open_member(s, k, motions[k], variant, message);
   return status;
@@ -192,16 +189,12 @@ void trb_simulation_free(trb_simulation *s)
   trb_simulation_end_peaks(s);
   it->kind->free(it);
   for (int k = 0; k < TRB_MOST_MEMBERS; k++) {
-    trb_impacts_free(&it->members[k].impacts);
+    trb_memory_free(&it->members[k].impacts.memory);
     trb_dynamics_free(it->members[k].dynamics);
     trb_dynamics_free(s->parts[k].onlooker);
     trb_detail_free(s->parts[k].detail);
-    free(s->apart[k]);
   }
-  free(it->y);
-  free(it->scale);
-  free(it->relative);
-  free(s->between);
+  trb_memory_free(&s->memory);
   free(s);
 }
 

@@ -17,6 +17,7 @@ typedef struct trb_simulation {
   double           previous;                /* start of the last step, s */
   int              with_peaks;              /* whether peaks are kept */
   trb_recorder    *recorder;                /* within a run that has one; else NULL */
+  trb_memory       memory;                  /* of all arrays */
 } trb_simulation;
 
 /* kind: name of an integrator; variant: name of a kernel variant or "". */

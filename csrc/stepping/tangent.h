@@ -1,24 +1,11 @@
-/* Tangents of the forces of raceways and ribs (docs/theory/numerics.md#tangents-of-raceway-and-rib-forces).
+/* Tangents of the forces of raceways and ribs (docs/theory/numerics.md#tangents-of-raceway-and-rib-forces): between exact evaluations a roller's
+ * flow, its part of the right-hand side, is taken from a linear approximation in its coordinates and the angle of the frame R. The same slopes
+ * are the part of the Jacobian that belongs to raceways and ribs.
  *
- * Nearly all computing time goes into films and friction of raceways and ribs, whose forces change smoothly. So these contacts are
- * evaluated exactly only now and then, and in between their effect is taken from a linear approximation: for each roller, its flow (its
- * part of the right-hand side: 11 rates, the rate of its spin angle and its powers in the energy audit) as a function of its 11
- * coordinates and of the angle of the frame R. The same slopes are the part of the Jacobian that belongs to raceways and ribs.
- *
- * A tangent is exact at one point, its origin. Distances from it are measured in tolerances of the integrator, and the tangent is used
- * up to a distance that is called its reach. Beyond it the contacts are evaluated exactly. That point becomes the new origin; the error
- * of the prediction there corrects the slopes along the step that was made (Broyden's update) and sets the new reach, so that errors
- * stay near a given share of a step's tolerance. Most of the way between origins is the roller's orbit, which is smooth: the change of slope from
- * one step to the next tells how the flow bends along it, and the tangent follows that bend (Newton's interpolation through the last three
- * origins). In other directions it is straight. A tangent that would be used for a few evaluations only is not used: each new origin
- * puts a small jump into the forces, and such jumps cost the integrator more than the tangent saves.
- *
- * An error that was measured in one direction says little about another direction, and a tangent cannot foresee that a contact begins or
- * ends or that the oil yields. Two more bounds therefore hold, whatever the reach is. While a tangent is followed no contact with a
- * raceway or a rib can begin or end; motion/bound.h proves that. And the roller's slip changes by at most a share of its rolling speed,
- * within which friction is linear.
- *
- * A ring that moves by itself adds its own inputs and outputs (stepping/ring_tangent.h). */
+ * A tangent is exact at its origin and used up to a distance from there, its reach, which is measured in tolerances. Beyond it contacts are
+ * evaluated exactly: that point is the new origin, and the error of the prediction there corrects the slopes (Broyden's update) and the bend along
+ * the way, and sets the new reach. Whatever the reach, no contact may begin or end while a tangent is followed (motion/bound.h), and slip changes
+ * within the range in which friction is linear. A ring that moves by itself adds inputs and outputs of its own (stepping/ring_tangent.h). */
 #ifndef TRB_STEPPING_TANGENT_H
 #define TRB_STEPPING_TANGENT_H
 
@@ -68,6 +55,7 @@ typedef struct trb_tangents {
   trb_ring_arms                     arms;                                       /* what bounds the change of an interference */
   double                            time;       /* at which the slopes of all rollers were last evaluated, s */
   int                               has_slopes; /* whether they were at all */
+  trb_memory                        memory;     /* of all arrays */
 } trb_tangents;
 
 /* Limits of a tangent, and what its error is measured with. */
@@ -79,6 +67,8 @@ typedef struct trb_tangent_measure {
   double                   margin_share; /* of the margins that a roller may use up */
   double                   slip_share;   /* of the mean rolling speed that a roller may slip away */
 } trb_tangent_measure;
+
+static const double trb_margin_share = 0.5, trb_slip_share = 3e-3; /* as integrators have them */
 
 /* Weight of a coordinate in a distance, one over its tolerance; like: a roller's coordinate of the same kind. */
 static inline double trb_tangent_weight(const trb_tangent_measure *measure, int like, double value)

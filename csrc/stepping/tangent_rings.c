@@ -3,6 +3,57 @@
 #include <math.h>
 #include <string.h>
 
+enum { CENTRE = 0, AXIS = 3, VELOCITY = 5, OMEGA = 8 };
+
+/* A roller's coordinate of the same kind as an input of a ring, which has its tolerance. */
+static int like(int input)
+{
+  return input < AXIS ? TRB_ROLLER_r : input < VELOCITY ? TRB_ROLLER_skew : input < OMEGA ? TRB_ROLLER_v_r : TRB_ROLLER_omega_n;
+}
+
+static void put(trb_vec3 v, double *to) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
+
+static trb_vec3 get(const double *from) { return trb_v(from[0], from[1], from[2]); }
+
+void trb_ring_inputs(const trb_ring_pose *ring, const trb_drive *drive, double *inputs)
+{
+  const trb_ring_pose in = trb_ring_pose_in_frame(ring, drive->cosine, drive->sine);
+  put(in.centre, inputs + CENTRE);
+  inputs[AXIS] = in.axis.x, inputs[AXIS + 1] = in.axis.y;
+  put(in.velocity, inputs + VELOCITY);
+  put(in.omega, inputs + OMEGA);
+}
+
+/* Step of a ring's inputs from the origin; gives the sum of squares of step times per. */
+static double step_of(const trb_ring_tangent *t, const double *inputs, double *step)
+{
+  double sum = 0.0;
+  for (int i = 0; i < TRB_RING_IN; i++) {
+    step[i] = inputs[i] - t->origin[i];
+    sum += step[i] * t->per[i] * (step[i] * t->per[i]);
+  }
+  return sum;
+}
+
+void trb_ring_move(trb_ring_pose *ring, int input, double by, double cosine, double sine)
+{
+  double moved[TRB_RING_IN] = {0};
+  moved[input] = by;
+  ring->centre = trb_add(ring->centre, trb_turn_z(get(moved + CENTRE), cosine, -sine));
+  ring->axis = trb_add(ring->axis, trb_turn_z(trb_v(moved[AXIS], moved[AXIS + 1], 0.0), cosine, -sine));
+  ring->velocity = trb_add(ring->velocity, trb_turn_z(get(moved + VELOCITY), cosine, -sine));
+  ring->omega = trb_add(ring->omega, trb_turn_z(get(moved + OMEGA), cosine, -sine));
+}
+
+void trb_ring_reaction(const trb_wrench *wrench, double *reaction)
+{
+  put(wrench->force, reaction);
+  put(wrench->moment, reaction + 3);
+  for (int i = 6; i < TRB_RING_OUT; i++) reaction[i] = 0.0;
+}
+
+trb_wrench trb_ring_wrench(const double *reaction) { return (trb_wrench){get(reaction), get(reaction + 3)}; }
+
 void trb_rings_differentiate_reactions(trb_tangents *t, const trb_dynamics *d, int roller, int input, double per, int only)
 {
   trb_wrench reactions[TRB_MOST_MOVING_RINGS];
@@ -45,7 +96,7 @@ void trb_rings_differentiate(trb_tangents *t, trb_dynamics *d, const int *chosen
     trb_dynamics_slow(d, &at, body, NULL);
     for (int i = 0; i < n; i++) trb_dynamics_roller_flow(d, chosen[i], &d->loads[chosen[i]], t->partly[chosen[i]]);
     for (int c = 0; c < TRB_RING_IN; c++) {
-      const double h = trb_difference[trb_roller_tolerance(trb_ring_like(c))], per = 1.0 / h;
+      const double h = trb_difference[trb_roller_coordinates[like(c)].tolerance], per = 1.0 / h;
       for (int i = 0; i < n; i++) {
         const trb_roller_pose *r = &d->rollers[chosen[i]];
         trb_ring_move(&d->bodies[body].in_frame[chosen[i]], c, h, r->cosine, r->sine);
@@ -89,7 +140,7 @@ void trb_rings_place(trb_tangents *t, const trb_dynamics *d)
 double trb_rings_step(const trb_tangents *t, int roller, double (*steps)[TRB_RING_IN])
 {
   double sum = 0.0;
-  for (int k = 0; k < t->system->n_moving; k++) sum += trb_ring_step(trb_tangents_ring_of(t, roller, k), t->inputs[k], steps[k]);
+  for (int k = 0; k < t->system->n_moving; k++) sum += step_of(trb_tangents_ring_of(t, roller, k), t->inputs[k], steps[k]);
   return sum;
 }
 
@@ -112,7 +163,7 @@ void trb_rings_move_origin(trb_tangents *t, const trb_dynamics *d, int roller, c
     ring->from = d->bodies[t->system->moving[k]].ring;
     memcpy(ring->origin, t->inputs[k], sizeof ring->origin);
     trb_ring_reaction(&reactions[k], ring->value);
-    for (int i = 0; i < TRB_RING_IN; i++) ring->per[i] = trb_tangent_weight(measure, trb_ring_like(i), ring->origin[i]);
+    for (int i = 0; i < TRB_RING_IN; i++) ring->per[i] = trb_tangent_weight(measure, like(i), ring->origin[i]);
   }
 }
 

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "stepping/tangent_learn.h"
 
 /* Turn of the frame R by which slopes over it are computed, rad. */
@@ -36,13 +35,13 @@ trb_status trb_tangents_create(const trb_system *system, trb_tangents **tangents
   if (t != NULL) {
     t->model = m;
     t->system = system;
-    t->rollers = trb_zeros(n, sizeof *t->rollers);
-    t->rings = trb_zeros(n * (size_t)system->n_moving + 1, sizeof *t->rings);
-    t->seen = calloc(n * (size_t)system->n_moving + 1, sizeof *t->seen);
-    t->partly = calloc(n, sizeof *t->partly);
-    t->beyond = calloc(n, sizeof *t->beyond);
+    t->rollers = trb_memory_zeros(&t->memory, n, sizeof *t->rollers);
+    t->rings = trb_memory_zeros(&t->memory, n * (size_t)system->n_moving, sizeof *t->rings);
+    t->seen = trb_memory_zeros(&t->memory, n * (size_t)system->n_moving, sizeof *t->seen);
+    t->partly = trb_memory_zeros(&t->memory, n, sizeof *t->partly);
+    t->beyond = trb_memory_zeros(&t->memory, n, sizeof *t->beyond);
   }
-  if (t == NULL || t->rollers == NULL || t->rings == NULL || t->seen == NULL || t->partly == NULL || t->beyond == NULL) {
+  if (t == NULL || t->memory.lacks) {
     trb_tangents_free(t);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the tangents of %d rollers", m->n_rollers);
   }
@@ -60,11 +59,7 @@ trb_status trb_tangents_create(const trb_system *system, trb_tangents **tangents
 void trb_tangents_free(trb_tangents *tangents)
 {
   if (tangents == NULL) return;
-  free(tangents->rollers);
-  free(tangents->rings);
-  free(tangents->seen);
-  free(tangents->partly);
-  free(tangents->beyond);
+  trb_memory_free(&tangents->memory);
   free(tangents);
 }
 
@@ -122,7 +117,7 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const int *cho
   }
   trb_rings_see(t, d, 0);
   for (int c = 0; c < TRB_NR; c++) {
-    const double h = trb_difference[trb_roller_tolerance(c)];
+    const double h = trb_difference[trb_roller_coordinates[c].tolerance];
     for (int k = 0; k < n; k++) {
       const int j = chosen[k];
       double   *entry = &moved[trb_state_roller(d->system, j) + c];

@@ -2,30 +2,18 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/variant.h"
 #include "stepping/blocks.h"
 #include "stepping/vectors.h"
 
-#ifndef TRB_KERNEL_VARIANT
-#define TRB_KERNEL_VARIANT scalar
-#endif
-#define TRB_JOIN_(a, b) a##b
-#define TRB_JOIN(a, b) TRB_JOIN_(a, b)
-
 static long length_of(N_Vector v) { return (long)N_VGetLength(v); }
-
-/* z may be x or y: entries are read before they are written, but the compiler has to be told. */
-#if defined(__GNUC__) && !defined(__clang__)
-#define ENTRIES _Pragma("GCC ivdep")
-#else
-#define ENTRIES
-#endif
 
 static void linear_sum(sunrealtype a, N_Vector x, sunrealtype b, N_Vector y, N_Vector z)
 {
   const double *from = N_VGetArrayPointer(x), *other = N_VGetArrayPointer(y);
   double       *to = N_VGetArrayPointer(z);
   const long    n = length_of(x);
-  ENTRIES for (long i = 0; i < n; i++) to[i] = a * from[i] + b * other[i];
+  TRB_LANES for (long i = 0; i < n; i++) to[i] = a * from[i] + b * other[i];
 }
 
 static void constant(sunrealtype a, N_Vector z)
@@ -40,7 +28,7 @@ static void scale(sunrealtype a, N_Vector x, N_Vector z)
   const double *from = N_VGetArrayPointer(x);
   double       *to = N_VGetArrayPointer(z);
   const long    n = length_of(x);
-  ENTRIES for (long i = 0; i < n; i++) to[i] = a * from[i];
+  TRB_LANES for (long i = 0; i < n; i++) to[i] = a * from[i];
 }
 
 /* Sum of squares of the weighted entries, no more than TRB_NP of them. */

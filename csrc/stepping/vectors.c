@@ -2,20 +2,13 @@
 
 #include <string.h>
 
+#include "base/variant.h"
 #include "stepping/sundials_context.h"
 
 typedef void use_function(N_Vector v);
 
-static use_function *const variants[] = {
-    trb_vector_use_scalar,
-    trb_vector_use_base,
-#ifdef TRB_HAVE_AVX2
-    trb_vector_use_avx2,
-#endif
-#ifdef TRB_HAVE_AVX512
-    trb_vector_use_avx512,
-#endif
-};
+#define VARIANT(name) trb_vector_use_##name,
+static use_function *const variants[] = {TRB_VARIANTS(VARIANT)};
 
 trb_body_entries trb_body_entries_of(const trb_assembly *assembly)
 {

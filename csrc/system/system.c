@@ -12,20 +12,12 @@ const trb_body *trb_state_body(const trb_system *system, int index, int *coordin
   return NULL;
 }
 
-trb_tolerance trb_roller_tolerance(int coordinate)
-{
-#define TRB_STATE_KIND(name, kind, text) TRB_TOL_##kind,
-  static const trb_tolerance roller[TRB_ROLLER_SIZE] = {TRB_ROLLER_STATE(TRB_STATE_KIND)};
-#undef TRB_STATE_KIND
-  return roller[coordinate];
-}
-
 trb_tolerance trb_state_tolerance(const trb_system *system, int index)
 {
   int             coordinate;
   const trb_body *body;
   const int       own = index - trb_state_roller(system, 0);
-  if (own >= 0 && own < system->model->n_rollers * TRB_ROLLER_SIZE) return trb_roller_tolerance(own % TRB_ROLLER_SIZE);
+  if (own >= 0 && own < system->model->n_rollers * TRB_ROLLER_SIZE) return trb_roller_coordinates[own % TRB_ROLLER_SIZE].tolerance;
   body = trb_state_body(system, index, &coordinate);
   return body != NULL ? body->coordinates[coordinate].tolerance : TRB_TOL_QUADRATURE;
 }

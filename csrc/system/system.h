@@ -71,8 +71,6 @@ static inline int trb_state_size(const trb_system *s) { return s->layout.size; }
 
 /* Tolerance kind of an entry; of entries that are none of this system: that of quadratures. */
 trb_tolerance trb_state_tolerance(const trb_system *system, int index);
-/* Tolerance kind of a coordinate of every roller. */
-trb_tolerance trb_roller_tolerance(int coordinate);
 /* The body of this system that has an entry of the hub, and the number of that coordinate; NULL: none of its bodies has it. */
 const trb_body *trb_state_body(const trb_system *system, int index, int *coordinate);
 

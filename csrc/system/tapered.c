@@ -6,7 +6,6 @@
 #include "body/elastic_cage.h"
 #include "body/free_ring.h"
 #include "body/ring.h"
-#include "body/spacer.h"
 
 enum {
   FLANK,

@@ -5,7 +5,6 @@
 #include "body/elastic_cage.h"
 #include "check.h"
 #include "contact/kernels.h"
-#include "motion/audit.h"
 #include "motion/fast_pairs.h"
 #include "rig.h"
 #include "stepping/jacobian.h"

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 
 #include "check.h"
-#include "motion/audit.h"
 #include "rig.h"
 #include "stepping/jacobian.h"
 

@@ -4,7 +4,6 @@
 
 #include "body/free_ring.h"
 #include "check.h"
-#include "motion/audit.h"
 #include "rig.h"
 #include "stepping/jacobian.h"
 

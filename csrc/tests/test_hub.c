@@ -7,7 +7,6 @@
 #include "check.h"
 #include "contact/kernels.h"
 #include "rig.h"
-#include "motion/audit.h"
 #include "stepping/jacobian.h"
 #include "stepping/sundials_context.h"
 #include "stepping/vectors.h"

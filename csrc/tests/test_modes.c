@@ -5,7 +5,6 @@
 #include "body/cage.h"
 #include "check.h"
 #include "contact/kernels.h"
-#include "motion/audit.h"
 #include "rig.h"
 #include "stepping/jacobian.h"
 

@@ -66,7 +66,7 @@ static void test_poor_slopes(trb_sundials *s)
   double             y[N], zero[N] = {0};
   problem            p = {.a = {1e-5, 2e-5, -1e-5}, .gamma = 1.0, .n_main = N, .strength = 2e-4, .width = 1e-4, .oil = 1};
   N_Vector           found = trb_sundials_vector(s, N, y), start = trb_sundials_vector(s, N, zero), weights = N_VClone(found);
-  SUNNonlinearSolver newton = trb_newton_solver(8, found, N, N - 1, 1, s->context);
+  SUNNonlinearSolver newton = trb_newton_solver(found, N, N - 1, 1, s->context);
   int                last = 0;
   N_VConst(1.0, weights);
   CHECK(SUNNonlinSolSetSysFn(newton, residual) == 0 && SUNNonlinSolSetLSetupFn(newton, setup) == 0 &&
@@ -109,7 +109,7 @@ static double run_again(problem *p, trb_sundials *s, double *found, int times)
   double             zero[N] = {0}, off[N];
   N_Vector           y = trb_sundials_vector(s, N, found), start = trb_sundials_vector(s, N, zero), weights = N_VClone(y),
                      out = trb_sundials_vector(s, N, off);
-  SUNNonlinearSolver newton = trb_newton_solver(8, y, p->n_main, p->n_main - 1, 1, s->context);
+  SUNNonlinearSolver newton = trb_newton_solver(y, p->n_main, p->n_main - 1, 1, s->context);
   double             largest = -1.0;
   N_VConst(1.0, weights);
   if (p->n_main < N) N_VGetArrayPointer(weights)[N - 1] = 1e-30;

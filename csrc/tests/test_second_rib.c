@@ -3,7 +3,6 @@
 #include <stdlib.h>
 
 #include "check.h"
-#include "motion/audit.h"
 #include "motion/equilibrium.h"
 #include "motion/record.h"
 #include "rig.h"

@@ -260,7 +260,7 @@ static double rise_with(double cage_mass)
   trb_impacts_look(&impacts, d, turning, 0.0, y, 1.0, &measure, d->everyone, system->model->n_rollers);
   speed = impacts.speed[0], factor = impacts.factor[0];
   CHECK(speed > 0.1 && factor > 0.0 && factor < 1.0);
-  trb_impacts_free(&impacts);
+  trb_memory_free(&impacts.memory);
   trb_dynamics_free(d);
   trb_motion_free(turning);
   rig_free(system);
@@ -317,7 +317,7 @@ static void test_far(void)
       CHECK_NEAR(impacts.speed[j], closing, 1e-9 * closing);
       seen++;
     }
-    trb_impacts_free(&impacts);
+    trb_memory_free(&impacts.memory);
     trb_dynamics_free(d);
     trb_motion_free(turning);
     rig_free(system);

@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parents[2]
 AREAS: dict[str, tuple[float, list[str]]] = {
     "laws": (0.14, ["csrc/laws/*.[ch]"]),
     "contacts": (0.19, ["csrc/surface/*.[ch]", "csrc/contact/*.[ch]"]),
-    "records": (0.10, ["csrc/motion/record.c", "csrc/motion/shown.c", "csrc/motion/audit.c", "csrc/motion/peak*.c"]),
+    "records": (0.10, ["csrc/motion/record.c", "csrc/motion/shown.c", "csrc/motion/peak*.c"]),
     "motion": (
         0.13,
         ["csrc/bearing/*.[ch]", "csrc/motion/[def]*.c", "csrc/motion/r[hi]*.c", "csrc/motion/bound.[ch]"],
