@@ -16,6 +16,7 @@ static const double ahead = 3.0;
 trb_status trb_impacts_create(const trb_model *m, trb_impacts *impacts, trb_message *message)
 {
   const size_t n = (size_t)m->n_rollers;
+  *impacts = (trb_impacts){0};
   impacts->speed = trb_memory_zeros(&impacts->memory, n + TRB_MOST_PAIRS, sizeof *impacts->speed);
   impacts->factor = trb_memory_zeros(&impacts->memory, n + 1, sizeof *impacts->factor);
   if (impacts->memory.lacks) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the impacts of %d rollers", m->n_rollers);

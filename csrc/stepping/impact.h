@@ -14,7 +14,7 @@ typedef struct trb_impacts {
   trb_memory  memory;                  /* of all arrays */
 } trb_impacts;
 
-/* Arrays of impacts that are all zero before; they are freed with their memory. */
+/* They are freed with their memory. */
 trb_status trb_impacts_create(const trb_model *m, trb_impacts *impacts, trb_message *message);
 void       trb_impacts_forget(const trb_model *m, trb_impacts *impacts);
 /* How exactly impacts are followed. */
