@@ -150,7 +150,7 @@ def test_an_oil_gives_its_own_stress_and_conductivity() -> None:
         (lambda: Lubricant(**OWN, pressure_law="dicke"), "lubricant.pressure_law", "needs its measured constants"),
         (lambda: Lubricant(oil="vg68", temperature_c=60.0, viscosity=0.05), "lubricant.viscosity", "must be left out"),
         (lambda: Lubricant(oil="vg69", temperature_c=60.0), "lubricant.oil", "'vg68'"),
-        (lambda: Lubricant(oil="vg68", temperature_c=300.0), "lubricant.temperature_c", "between -40 and 200"),
+        (lambda: Lubricant(oil="vg68", temperature_c=300.0), "lubricant.temperature_c", "from -40 to 200"),
         (
             lambda: vg100(60.0).replace(pressure_coefficient=1e-8),
             "lubricant.pressure_coefficient",

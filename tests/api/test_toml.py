@@ -194,7 +194,7 @@ class TestMistakes:
             (
                 "",
                 "[lubricant]\noil = 'vg100'\ntemperature_c = 900",
-                "lubricant.temperature_c = 900 : must be between -20 and 200 (C)",
+                "lubricant.temperature_c = 900 : must be from -20 to 200 (C)",
             ),
             ("", "[effects]\npreset = 'papr'", "effects.preset = 'papr' : must be one of 'standard', 'paper',"),
             (

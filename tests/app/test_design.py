@@ -93,7 +93,7 @@ def test_a_change_of_units_changes_no_quantity() -> None:
         ("bearing.n_rollers", "12.5", "whole number"),
         ("scene.speed_rpm", "1e12", "must be from"),
         ("scene.axial_load", "0", "must be > 0"),
-        ("lubricant.temperature_c", "900", "between -20 and 200"),
+        ("lubricant.temperature_c", "900", "from -20 to 200"),
         ("run.revolutions", "0", "must be > 0"),
         ("run.revolutions", "1e12", "must end the run"),
         ("effects.starvation_factor", "7", "must be"),

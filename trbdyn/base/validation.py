@@ -79,12 +79,20 @@ def as_whole_number(value: object) -> int:
     return whole
 
 
-def number_of(name: str, value: object) -> float:
-    """An argument that must be a real number, as float; it may be infinite or not a number."""
+def number_of(name: str, value: object, symbol: str = "1", **bounds: float) -> float:
+    """An argument that must be a real number, as float, within bounds in its unit (``gt``, ``ge``, or ``ge`` and ``le``); without
+    them it may be infinite or not a number.
+    """
+    suffix = "" if symbol == "1" else f" ({symbol})"
     try:
-        return as_number(value)
+        number = as_number(value)
     except ValueError as error:
-        raise InputError.of(name, value, str(error)) from None
+        raise InputError.of(name, value, f"{error}{suffix}") from None
+    low, high = bounds.get("gt", bounds.get("ge", -math.inf)), bounds.get("le", math.inf)
+    if bounds and not (low < number if "gt" in bounds else low <= number <= high):
+        limit = f"from {low:g} to {high:g}" if "le" in bounds else f"{'>' if 'gt' in bounds else '>='} {low:g}"
+        raise InputError.of(name, value, f"must be {limit}{suffix}")
+    return number
 
 
 def whole_number_of(name: str, value: object, least: int, most: float = math.inf) -> int:

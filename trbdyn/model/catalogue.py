@@ -16,7 +16,7 @@ from collections.abc import Mapping
 from difflib import get_close_matches
 from typing import Any, Final
 
-from trbdyn.base.validation import as_number, as_whole_number
+from trbdyn.base.validation import as_whole_number, number_of
 from trbdyn.errors import MISSING, InputError, Problem
 from trbdyn.model.assumed import ISO_LENGTH, ISO_LONG, ISO_SHORT, scaled
 from trbdyn.model.catalogue_cylinders import check_kind, usual_clearance, with_raceways
@@ -175,12 +175,8 @@ def _positive(key: str, value: object) -> None:
     unit = NUMBERS[key]
     if value is MISSING:
         raise InputError([Problem((key,), MISSING, f"must be given ({unit})")])
-    try:
-        number = as_number(value)
-    except ValueError as error:
-        raise InputError.of(key, value, f"{error} ({unit})") from None
-    if not 0.0 < number < math.inf:
-        raise InputError.of(key, value, f"must be > 0 ({unit})")
+    if not number_of(key, value, unit, gt=0.0) < math.inf:
+        raise InputError.of(key, value, f"must be a finite number ({unit})")
 
 
 def _count(value: object) -> None:

@@ -18,7 +18,7 @@ import scipy
 from numpy.typing import ArrayLike, NDArray
 from pydantic import model_validator
 
-from trbdyn.base.validation import Flag, Model, Number, as_number, unit
+from trbdyn.base.validation import Flag, Model, Number, as_number, number_of, unit
 from trbdyn.errors import InputError
 
 FloatArray = NDArray[np.float64]
@@ -146,10 +146,7 @@ class History(Model):
         """
         begins = _listed("times", [times] if isinstance(times, int | float | np.number) else times)
         levels = _listed("values", values)
-        try:
-            taken = as_number(rise)
-        except ValueError as error:
-            raise InputError.of("rise", rise, str(error)) from None
+        taken = number_of("rise", rise)
         if not taken > 0.0:
             limit = "must be > 0: a load that jumps in no time would move the ring at any speed; 1e-3 is usual (s)"
             raise InputError.of("rise", rise, limit)
@@ -195,24 +192,14 @@ class History(Model):
         >>> float(load.value(0.0)), float(load.value(0.01))
         (3500.0, 2500.0)
         """
-        found: dict[str, float] = {}
-        for name, value in (
-            ("mean", mean),
-            ("amplitude", amplitude),
-            ("frequency_hz", frequency_hz),
-            ("phase_deg", phase_deg),
-        ):
-            try:
-                found[name] = as_number(value)
-            except ValueError as error:
-                raise InputError.of(name, value, str(error)) from None
+        found = {"mean": mean, "amplitude": amplitude, "phase_deg": phase_deg}
+        for name, value in found.items():
+            found[name] = number_of(name, value)
             if not math.isfinite(found[name]):
                 raise InputError.of(name, value, "must be a finite number")
         if found["amplitude"] < 0.0:
             raise InputError.of("amplitude", amplitude, "must be >= 0; turn phase_deg by 180 for the opposite")
-        if not 1e-6 <= found["frequency_hz"] <= 1e6:
-            raise InputError.of("frequency_hz", frequency_hz, "must be from 1e-06 to 1e+06 (Hz)")
-        period = 1.0 / found["frequency_hz"]
+        period = 1.0 / number_of("frequency_hz", frequency_hz, "Hz", ge=1e-6, le=1e6)
         # the knots lie at the extremes and at the mean, so that the curve keeps to its amplitude exactly
         steps = np.arange(HARMONIC_PIECES + 1) / HARMONIC_PIECES
         times = (steps - math.fmod(found["phase_deg"], 360.0) / 360.0) * period

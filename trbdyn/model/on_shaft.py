@@ -18,7 +18,7 @@ from trbdyn.model.elastic_cage import ElasticCage
 from trbdyn.model.growth import Growth
 from trbdyn.model.lubricants import Lubricant, vg100
 from trbdyn.model.motion import Quantity
-from trbdyn.model.ring_body import Housing, RingBody, check_inertias
+from trbdyn.model.ring_body import Housing, Revolved
 from trbdyn.model.scene import oil_by_name
 from trbdyn.model.start import Start
 
@@ -27,58 +27,12 @@ MAX_END_PLAY: Final = 3e-4
 have no equilibrium in the wide gap."""
 
 
-class OnAxis(Model):
-    """A rigid body of revolution about the axis of an assembly: what `Shaft` and `SharedHousing` have in common."""
+class OnAxis(Revolved):
+    """A body about the axis of an assembly: what `Shaft` and `SharedHousing` have in common."""
 
-    mass: Annotated[Number, parameter("ring_mass", gt=0.0)]
-    inertia_axial: Annotated[Number, parameter("ring_inertia_axial", gt=0.0)]
-    inertia_transverse: Annotated[Number, parameter("ring_inertia_transverse", gt=0.0)]
     mass_position: Annotated[Number, unit("m", ge=-100.0, le=100.0)] = 0.0
     damping: Annotated[Number, parameter("ring_damping")] = 0.0
     damping_turns: Annotated[Number, parameter("ring_damping_turns")] = 0.0
-
-    @model_validator(mode="after")
-    def _check(self) -> Self:
-        check_inertias(self.inertia_axial, self.inertia_transverse)
-        return self
-
-    @classmethod
-    def hollow_cylinder(
-        cls,
-        *,
-        mass: float,
-        inner_diameter: float = 0.0,
-        outer_diameter: float,
-        length: float,
-        mass_position: float = 0.0,
-    ) -> Self:
-        """A hollow or solid cylinder.
-
-        Parameters
-        ----------
-        mass : float
-            Mass (kg).
-        inner_diameter, outer_diameter : float
-            Its diameters (m).
-        length : float
-            Its length (m).
-        mass_position : float
-            Position of its middle along the shaft (m).
-
-        Raises
-        ------
-        InputError
-            If a dimension is not allowed.
-        """
-        body = RingBody.hollow_cylinder(
-            mass=mass, inner_diameter=inner_diameter, outer_diameter=outer_diameter, length=length
-        )
-        return cls(
-            mass=mass,
-            inertia_axial=body.inertia_axial,
-            inertia_transverse=body.inertia_transverse,
-            mass_position=mass_position,
-        )
 
 
 class Shaft(OnAxis):
@@ -188,9 +142,7 @@ class SharedHousing(OnAxis):
             each = [given] * len(places) if isinstance(given, int | float) else list(given)
             if len(each) != len(places):
                 raise InputError.of(name, len(each), f"must be one number, or {len(places)} for {len(places)} supports")
-            sums[name] = [number_of(name, one) for one in each]
-            if not all(0.0 <= one < math.inf for one in sums[name]):
-                raise InputError.of(name, given, f"must be >= 0 ({'N m/rad' if name == 'tilt' else 'N/m'})")
+            sums[name] = [number_of(name, one, "N m/rad" if name == "tilt" else "N/m", ge=0.0) for one in each]
         if not sum(sums["radial"]) > 0.0:
             raise InputError.of("radial", radial, "must be > 0 in one support at least (N/m)")
         whole = math.fsum(sums["radial"])
@@ -440,12 +392,9 @@ class ShaftLoad(Model):
         >>> tuple(round(part) for part in curve.force), curve.offset
         ((0, 4960, -1488), (0.0, -0.3))
         """
-        if not rolling_radius > 0.0:
-            raise InputError.of("rolling_radius", rolling_radius, "must be > 0 (m)")
-        if not load >= 0.0:
-            raise InputError.of("load", load, "must be >= 0 (N)")
-        if not centre_height >= 0.0:
-            raise InputError.of("centre_height", centre_height, "must be >= 0 (m)")
+        number_of("rolling_radius", rolling_radius, "m", gt=0.0)
+        number_of("load", load, "N", ge=0.0)
+        number_of("centre_height", centre_height, "m", ge=0.0)
         if (centre_height > 0.0 or track is not None) and not (track or 0.0) > 0.0:
             raise InputError.of("track", track, "must be given with a centre_height, and > 0 (m)")
         for name, value, known in (
@@ -503,14 +452,9 @@ class ShaftLoad(Model):
         -----
         Source: ISO 21771:2007 for the angles; the balance of the mesh for the forces.
         """
-        if not pitch_diameter > 0.0:
-            raise InputError.of("pitch_diameter", pitch_diameter, "must be > 0 (m)")
-        for name, angle, most in (
-            ("pressure_angle_deg", pressure_angle_deg, 45.0),
-            ("helix_angle_deg", helix_angle_deg, 60.0),
-        ):
-            if not abs(angle) < most:
-                raise InputError.of(name, angle, f"must be from {-most:g} to {most:g} (deg)")
+        number_of("pitch_diameter", pitch_diameter, "m", gt=0.0)
+        number_of("pressure_angle_deg", pressure_angle_deg, "deg", ge=-45.0, le=45.0)
+        number_of("helix_angle_deg", helix_angle_deg, "deg", ge=-60.0, le=60.0)
         tangential, where = 2.0 * torque / pitch_diameter, math.radians(direction_deg)
         pressure, helix = math.radians(pressure_angle_deg), math.radians(helix_angle_deg)
         inward = abs(tangential) * math.tan(pressure) / math.cos(helix)

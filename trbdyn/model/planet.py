@@ -75,13 +75,11 @@ def planet(
     >>> round(max(scene.gravity[0].values)), scene.outer_speed_rpm
     (118, -1200)
     """
-    speed, radius = number_of("carrier_speed_rpm", carrier_speed_rpm), number_of("arm", arm)
+    speed, radius = number_of("carrier_speed_rpm", carrier_speed_rpm, "rpm"), number_of("arm", arm, "m", gt=0.0)
     if speed == 0.0:
         raise InputError.of(
             "carrier_speed_rpm", speed, "must not be 0: with a carrier at rest the bearing is an ordinary one (rpm)"
         )
-    if not radius > 0.0:
-        raise InputError.of("arm", radius, "must be > 0 (m)")
     given = [name for name in ("speed_rpm", "outer_speed_rpm", "rotating_load", "ring", "radial_load") if name in scene]
     if given:
         raise InputError.of(

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from trbdyn.base.validation import as_number
+from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
 from trbdyn.model.pocket import Face, Pocket
 
@@ -92,7 +92,7 @@ def drafted_pocket(bearing: Bearing, lean_deg: float) -> Pocket:
     lean_deg : float
         Angle of the contact line around the roller, from the circumferential direction outward (deg), -80 to 80.
     """
-    lean = math.radians(_between("lean_deg", lean_deg, -LARGEST_LEAN_DEG, LARGEST_LEAN_DEG, "deg"))
+    lean = math.radians(number_of("lean_deg", lean_deg, "deg", ge=-LARGEST_LEAN_DEG, le=LARGEST_LEAN_DEG))
     bars = [_bar(bearing, side, lean, _rectangle(bearing)) for side in SIDES]
     return Pocket(faces=(*bars, large_end_wall(bearing), small_end_wall(bearing)))
 
@@ -109,8 +109,8 @@ def stepped_pocket(bearing: Bearing, step: float = 5e-5, split: float = 0.5) -> 
     split : float
         Share of the bar's length that the small-end part takes, 0.05 to 0.95.
     """
-    step = _between("step", step, 0.0, 1e-2, "m")
-    split = _between("split", split, 0.05, 0.95, "1")
+    step = number_of("step", step, "m", ge=0.0, le=1e-2)
+    split = number_of("split", split, "1", ge=0.05, le=0.95)
     half, half_width = 0.5 * bearing.roller.effective_length, 0.5 * bearing.cage.bar_width
     border = half * (2.0 * split - 1.0)
     parts = [
@@ -130,7 +130,7 @@ def relieved_pocket(bearing: Bearing, relief: float = 0.5) -> Pocket:
     relief : float
         Share of the bar's length that is relieved, 0.05 to 0.95.
     """
-    relief = _between("relief", relief, 0.05, 0.95, "1")
+    relief = number_of("relief", relief, "1", ge=0.05, le=0.95)
     half, half_width = 0.5 * bearing.roller.effective_length, 0.5 * bearing.cage.bar_width
     parts = [
         ("", 0, _box(-half, -relief * half, half_width), 0.0),
@@ -150,7 +150,7 @@ def chamfered_pocket(bearing: Bearing, chamfer: float = 1e-3) -> Pocket:
         Length cut from each side at a corner (m).
     """
     half, half_width = 0.5 * bearing.roller.effective_length, 0.5 * bearing.cage.bar_width
-    cut = _between("chamfer", chamfer, 1e-6, 0.98 * min(half, half_width), "m")
+    cut = number_of("chamfer", chamfer, "m", ge=1e-6, le=0.98 * min(half, half_width))
     inner, narrow = half - cut, half_width - cut
     outline = [
         (-inner, -half_width),
@@ -262,17 +262,6 @@ def _rectangle(bearing: Bearing) -> Outline:
 
 def _box(start: float, end: float, half_width: float) -> Outline:
     return [(start, -half_width), (end, -half_width), (end, half_width), (start, half_width)]
-
-
-def _between(name: str, value: float, low: float, high: float, symbol: str) -> float:
-    suffix = "" if symbol == "1" else f" ({symbol})"
-    try:
-        number = as_number(value)
-    except ValueError as error:
-        raise InputError.of(name, value, f"{error}{suffix}") from None
-    if not low <= number <= high:
-        raise InputError.of(name, value, f"must be between {low:g} and {high:g}{suffix}")
-    return number
 
 
 SHAPES: dict[str, Callable[..., Pocket]] = {

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Annotated, ClassVar, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 from pydantic import model_validator
 
-from trbdyn.base.validation import Model, Number, unit
+from trbdyn.base.validation import Model, Number, number_of, unit
 from trbdyn.errors import MISSING, InputError
 from trbdyn.model.core_table import parameter
 from trbdyn.model.motion import is_constant, values_of
@@ -16,33 +16,24 @@ if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
 
 
-class MovingBody(Model):
-    """A rigid body of revolution on springs and dampers to the surroundings: what `RingBody` and `Housing` have in common."""
+class Revolved(Model):
+    """A rigid body of revolution: what everything that moves with a shaft or a housing has in common."""
 
     mass: Annotated[Number, parameter("ring_mass", gt=0.0)]
     inertia_axial: Annotated[Number, parameter("ring_inertia_axial", gt=0.0)]
     inertia_transverse: Annotated[Number, parameter("ring_inertia_transverse", gt=0.0)]
-    mass_offset: Annotated[Number, parameter("ring_offset")] = 0.0
-    damping: Annotated[Number, parameter("ring_damping")] = 0.0
-    damping_turns: Annotated[Number, parameter("ring_damping_turns")] = 0.0
-    support_radial: Annotated[Number, parameter("ring_support_radial")] = 0.0
-    support_axial: Annotated[Number, parameter("ring_support_axial")] = 0.0
-    support_tilt: Annotated[Number, parameter("ring_support_tilt")] = 0.0
-    support_position: Annotated[Number, parameter("ring_support_position")] = 0.0
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        check_inertias(self.inertia_axial, self.inertia_transverse)
+        most = 2.0 * self.inertia_transverse
+        if self.inertia_axial > most * (1.0 + 1e-9):
+            limit = f"must be <= {most:.6g}: no body has more than twice its inertia_transverse (kg m2)"
+            raise InputError.of("inertia_axial", self.inertia_axial, limit)
         return self
-
-    @property
-    def is_supported(self) -> bool:
-        """Whether a spring holds it."""
-        return self.support_radial > 0.0 or self.support_axial > 0.0 or self.support_tilt > 0.0
 
     @classmethod
     def hollow_cylinder(
-        cls, *, mass: float, inner_diameter: float = 0.0, outer_diameter: float, length: float, mass_offset: float = 0.0
+        cls, *, mass: float, inner_diameter: float = 0.0, outer_diameter: float, length: float, **fields: Any
     ) -> Self:
         """A hollow or solid cylinder.
 
@@ -54,28 +45,39 @@ class MovingBody(Model):
             Its diameters (m).
         length : float
             Its length (m).
-        mass_offset : float
-            Axial position of its middle from the roller-centre plane (m).
+        **fields
+            Other fields: `mass_position` or `mass_offset`, where its middle is.
 
         Raises
         ------
         InputError
             If a dimension is not allowed.
         """
-        if not outer_diameter > 0.0:
-            raise InputError.of("outer_diameter", outer_diameter, "must be > 0 (m)")
-        if not 0.0 <= inner_diameter < outer_diameter:
+        number_of("outer_diameter", outer_diameter, "m", gt=0.0)
+        number_of("length", length, "m", gt=0.0)
+        if not 0.0 <= number_of("inner_diameter", inner_diameter, "m") < outer_diameter:
             limit = f"must be from 0 to less than outer_diameter = {outer_diameter:g} (m)"
             raise InputError.of("inner_diameter", inner_diameter, limit)
-        if not length > 0.0:
-            raise InputError.of("length", length, "must be > 0 (m)")
         squares = 0.25 * (math.pow(inner_diameter, 2) + math.pow(outer_diameter, 2))
-        return cls(
-            mass=mass,
-            inertia_axial=0.5 * mass * squares,
-            inertia_transverse=mass * (0.25 * squares + length**2 / 12.0),
-            mass_offset=mass_offset,
-        )
+        across = mass * (0.25 * squares + length**2 / 12.0)
+        return cls(mass=mass, inertia_axial=0.5 * mass * squares, inertia_transverse=across, **fields)
+
+
+class MovingBody(Revolved):
+    """A body on springs and dampers to the surroundings: what `RingBody` and `Housing` have in common."""
+
+    mass_offset: Annotated[Number, parameter("ring_offset")] = 0.0
+    damping: Annotated[Number, parameter("ring_damping")] = 0.0
+    damping_turns: Annotated[Number, parameter("ring_damping_turns")] = 0.0
+    support_radial: Annotated[Number, parameter("ring_support_radial")] = 0.0
+    support_axial: Annotated[Number, parameter("ring_support_axial")] = 0.0
+    support_tilt: Annotated[Number, parameter("ring_support_tilt")] = 0.0
+    support_position: Annotated[Number, parameter("ring_support_position")] = 0.0
+
+    @property
+    def is_supported(self) -> bool:
+        """Whether a spring holds it."""
+        return self.support_radial > 0.0 or self.support_axial > 0.0 or self.support_tilt > 0.0
 
 
 class RingBody(MovingBody):
@@ -167,14 +169,6 @@ class Housing(MovingBody):
     """
 
     _root: ClassVar[str | None] = "housing"
-
-
-def check_inertias(axial: float, transverse: float) -> None:
-    """Refuse moments of inertia (kg m2) that no body has: the axial one is at most twice the transverse one."""
-    most = 2.0 * transverse
-    if axial > most * (1.0 + 1e-9):
-        limit = f"must be <= {most:.6g}: no body has more than twice its inertia_transverse (kg m2)"
-        raise InputError.of("inertia_axial", axial, limit)
 
 
 def check_free_ring(scene: Scene) -> None:

@@ -235,8 +235,7 @@ def _check(
         ("cutoff", cutoff, 1e-6, 1e-2, "m"),
         ("magnification", magnification, 1e-3, 1e6, "1"),
     ):
-        if not least <= number_of(name, value) <= most:
-            raise InputError.of(name, value, f"must be from {least:g} to {most:g} ({unit})")
+        number_of(name, value, unit, ge=least, le=most)
     for name, value, kinds in (
         ("level", level, Level),
         ("large_end", large_end, LargeEnd),

@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar, Final, Literal, Self
 
 from pydantic import SerializerFunctionWrapHandler, model_serializer, model_validator
 
-from trbdyn.base.validation import Flag, Model, Number, as_number, split_paths, unit
+from trbdyn.base.validation import Flag, Model, Number, as_number, number_of, split_paths, unit
 from trbdyn.errors import InputError
 from trbdyn.model.core_table import parameter
 from trbdyn.model.lubricants.viscosity import Dicke, Vogel, astm_d341, wooster
@@ -236,15 +236,9 @@ class Lubricant(Model):
             return found
         oil = _oil(found["oil"])
         found["oil"] = oil
-        temperature = found.setdefault("temperature_c", 60.0)
-        try:
-            temperature = as_number(temperature)
-        except ValueError:
-            return found
         lowest = LOWEST_TEMPERATURE_C if oil.vogel is None else LOWEST_MEASURED_C
-        if not lowest <= temperature <= HIGHEST_TEMPERATURE_C:
-            limit = f"must be between {lowest:g} and {HIGHEST_TEMPERATURE_C:g} (C)"
-            raise InputError.of("temperature_c", found["temperature_c"], limit)
+        given = found.setdefault("temperature_c", 60.0)
+        temperature = number_of("temperature_c", given, "C", ge=lowest, le=HIGHEST_TEMPERATURE_C)
         found.setdefault("dicke", oil.dicke)
         found.setdefault("pressure_law", "dicke" if found["dicke"] is not None else "roelands")
         own = Dicke.model_validate(found["dicke"]) if found["pressure_law"] == "dicke" and found["dicke"] else None

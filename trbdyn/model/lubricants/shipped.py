@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Final
 
-from trbdyn.base.validation import as_number
 from trbdyn.errors import InputError
 from trbdyn.model.lubricants.lubricant import FVA3, MINERAL, SHIPPED, Lubricant, PressureLaw
 
@@ -42,13 +41,7 @@ def vg100(
     -----
     Source: Wingertszahn 2023, Lubricants 11:369.
     """
-    try:
-        temperature = as_number(temperature_c)
-    except ValueError as error:
-        raise InputError.of("temperature_c", temperature_c, f"{error} (C)") from None
-    if not -20.0 <= temperature <= 200.0:
-        raise InputError.of("temperature_c", temperature_c, "must be between -20 and 200 (C)")
-    return FVA3.at(temperature, pressure_law=pressure_law, eyring_stress=eyring_stress)
+    return FVA3.at(temperature_c, pressure_law=pressure_law, eyring_stress=eyring_stress)
 
 
 def iso_vg(grade: int, temperature_c: float = 60.0, *, eyring_stress: float = 5e6) -> Lubricant:
