@@ -147,6 +147,16 @@ class TestFlatten:
         entries = flatten.scene_entries(dry)
         assert [entries[n].value for n in ("thermal", "rolling_resistance", "rolling_pressure_force")] == [0, 0, 0]
 
+    def test_loads_of_two_frequencies_in_one_channel(self, scene: Scene) -> None:
+        waves = [History.harmonic(0.0, 10.0, frequency_hz=f) for f in (50.0, 70.0)]
+        loads: dict[str, flatten.Load] = {"force_x": tuple((2.0, wave) for wave in waves)}
+        period = flatten.loads_period(scene, loads)
+        assert period == pytest.approx(0.1)  # five of one, seven of the other
+        table = flatten.motion_table(scene, [0.0] * 5, loads=loads)
+        t = np.linspace(0.0, 0.0999, 500)
+        channel = [name for name, *_ in _core.motion_table()].index("force_x")
+        assert hermite(table, channel, t) == pytest.approx(2.0 * sum(wave.value(t) for wave in waves), abs=1e-9)
+
     def test_ring_load(self, rig: Bearing) -> None:
         scene = Scene(rig, speed_rpm=-60, axial_load=4930, radial_load=100, radial_direction_deg=30, moment_y=2.0)
         load = flatten.ring_load(scene)

@@ -10,7 +10,7 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,8 +24,7 @@ from trbdyn.model.effects import Effects
 from trbdyn.model.geometry import Geometry
 from trbdyn.model.growth import running_clearance, running_pockets
 from trbdyn.model.lubricants import Dicke, Lubricant, replenishment_decline
-from trbdyn.model.motion import History, common_period, joint_times, knot_table, settled_time, value_at
-from trbdyn.model.ring_body import Housing
+from trbdyn.model.motion import History, common_period, joint_times, knot_table, periods_of, settled_time, value_at
 
 if TYPE_CHECKING:
     from trbdyn.model.bearing import Bearing
@@ -35,19 +34,28 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
-PROFILES = {"straight": 0, "crowned": 1, "logarithmic": 2, "iso": 3, "table": 0}
-QUADRATURES = {"uniform": 0, "gauss": 1}
-PRESSURE_LAWS = {"dicke": 0, "roelands": 1, "barus": 2}
-LUBRICATION = {"dry": 0, "boundary": 1, "mixed": 2, "full_film": 3}
-TRACTION = {"none": 0, "coulomb": 1, "muraki_kimura": 2}
-ROLLING_LAWS = {"zhou_hoeprich": 1, "goksem_hargreaves": 2, "aihara": 3, "matsuyama": 4, "biboulet_houpert": 5}
-RIB_FILMS = {"max": 0, "pe": 1, "needle": 2}
-THERMAL_LAWS = {"gupta": 1, "aihara": 2}
-MIXED_LAWS = {"power": 0, "exponential": 1}
-DAMPING = {"off": 0, "hunt_crossley": 1, "film": 2}
-BODIES = {"rollers": 0, "rollers_and_cage": 1, "rollers_and_spacer": 2}
-GUIDANCE = {"rollers": 0, "inner_land": 1, "outer_land": 2}
-PARTS = {"flank": 0, "large_end": 1, "small_end": 2}
+CODES: Final[dict[str, dict[str, int]]] = {
+    "profile": {"straight": 0, "crowned": 1, "logarithmic": 2, "iso": 3, "table": 0},
+    "quadrature": {"uniform": 0, "gauss": 1},
+    "viscosity_law": {"dicke": 0, "roelands": 1, "barus": 2},
+    "lubrication": {"dry": 0, "boundary": 1, "mixed": 2, "full_film": 3},
+    "traction": {"none": 0, "coulomb": 1, "muraki_kimura": 2},
+    "rolling_resistance": {
+        "zhou_hoeprich": 1,
+        "goksem_hargreaves": 2,
+        "aihara": 3,
+        "matsuyama": 4,
+        "biboulet_houpert": 5,
+    },
+    "rib_film": {"max": 0, "pe": 1, "needle": 2},
+    "thermal": {"gupta": 1, "aihara": 2},
+    "mixed_law": {"power": 0, "exponential": 1},
+    "damping": {"off": 0, "hunt_crossley": 1, "film": 2},
+    "with_cage": {"rollers": 0, "rollers_and_cage": 1, "rollers_and_spacer": 2},
+    "guidance": {"rollers": 0, "inner_land": 1, "outer_land": 2},
+    "part": {"flank": 0, "large_end": 1, "small_end": 2},
+}
+"""Numbers that stand for choices, by the core's names: parameters, and the part of a roller that a face of a pocket meets."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +68,8 @@ class Entry:
 
 Entries = dict[str, Entry]
 
-HOUSING_LOADS = ("housing_force_x", "housing_force_y", "housing_force_z", "housing_moment_x", "housing_moment_y")
+RING_PLACES: Final = ("displacement_x", "displacement_y", "displacement_z", "rotation_x", "rotation_y")
+HOUSING_LOADS: Final = ("housing_force_x", "housing_force_y", "housing_force_z", "housing_moment_x", "housing_moment_y")
 """Channels of the force (N) and the moment through the apex (N m) by which the support of a housing holds it at the start."""
 
 
@@ -93,7 +102,7 @@ def bearing_entries(bearing: Bearing) -> Entries:
         **named_entries(bearing.roughness, "roughness"),
         **named_entries(bearing.land, "land"),
         "cup_half_angle": Entry(("cup_half_angle_deg",), math.radians(bearing.cup_half_angle_deg)),
-        "profile": Entry(("roller", "profile", "kind"), PROFILES[roller.profile.kind]),
+        "profile": Entry(("roller", "profile", "kind"), CODES["profile"][roller.profile.kind]),
         **_material("", ("material",), bearing.material),
         **_material("roller_", ("roller", "material") if roller.material else ("material",), bearing.roller_material),
         **_material("cage_", ("cage", "material") if cage.material else ("material",), bearing.cage_material),
@@ -111,37 +120,27 @@ def lubricant_entries(lubricant: Lubricant) -> Entries:
     return {
         **named_entries(lubricant.dicke or Dicke(), "dicke"),
         **named_entries(lubricant),
-        "viscosity_law": Entry(("pressure_law",), PRESSURE_LAWS[lubricant.pressure_law]),
+        "viscosity_law": Entry(("pressure_law",), CODES["viscosity_law"][lubricant.pressure_law]),
     }
 
 
 def effects_entries(effects: Effects) -> Entries:
-    """Numbers of the effects, by their names in the core's table; paths start at the effects.
+    """Numbers of the effects, by their names in the core's table, which most fields have; paths start at the effects.
 
     Effects of films are handed on as off where there are no films.
     """
-    rolling = effects.films and effects.rolling_resistance
-    without_films = "off" if effects.damping == "off" else "hunt_crossley"
+    own = {name: getattr(effects, name) for name in Effects.model_fields if name in PARAMETERS}
+    rolling, off = effects.films and effects.rolling_resistance, effects.damping == "off"
+    own["thermal"] = effects.films and effects.thermal and effects.thermal_law
+    own["rolling_resistance"] = rolling and effects.rolling_law
+    own["rolling_pressure_force"] = rolling and effects.rolling_pressure_force
+    own["damping"] = effects.damping if effects.films or off else "hunt_crossley"
     return {
-        **named_entries(effects),
+        **{
+            name: Entry((name,), CODES[name][value] if isinstance(value, str) else value) for name, value in own.items()
+        },
+        "with_cage": Entry(("bodies",), CODES["with_cage"][effects.bodies]),
         **named_entries(effects.friction, "friction"),
-        "quadrature": Entry(("quadrature",), QUADRATURES[effects.quadrature]),
-        "damping": Entry(("damping",), DAMPING[effects.damping if effects.films else without_films]),
-        "guidance": Entry(("guidance",), GUIDANCE[effects.guidance]),
-        "with_cage": Entry(("bodies",), BODIES[effects.bodies]),
-        "planar": Entry(("planar",), float(effects.planar)),
-        "lubrication": Entry(("lubrication",), LUBRICATION[effects.lubrication]),
-        "traction": Entry(("traction",), TRACTION[effects.traction]),
-        "thermal": Entry(("thermal",), float(effects.films and effects.thermal and THERMAL_LAWS[effects.thermal_law])),
-        "mixed_law": Entry(("mixed_law",), MIXED_LAWS[effects.mixed_law]),
-        "rib_turning": Entry(("rib_turning",), float(effects.rib_turning)),
-        "flooded_gaps": Entry(("flooded_gaps",), float(effects.flooded_gaps)),
-        "rolling_resistance": Entry(("rolling_resistance",), float(rolling and ROLLING_LAWS[effects.rolling_law])),
-        "rolling_pressure_force": Entry(("rolling_pressure_force",), float(rolling and effects.rolling_pressure_force)),
-        "rib_film": Entry(("rib_film",), RIB_FILMS[effects.rib_film]),
-        "pocket_bars": Entry(("pocket_bars",), float(effects.pocket_bars)),
-        "pocket_ends": Entry(("pocket_ends",), float(effects.pocket_ends)),
-        "pocket_edges": Entry(("pocket_edges",), float(effects.pocket_edges)),
     }
 
 
@@ -197,18 +196,17 @@ def input_error_of_core(error: Exception, entries: Mapping[str, Entry]) -> Input
 
 def scene_entries(scene: Scene) -> Entries:
     """Numbers of a scene, by their names in the core's table; paths start at the scene."""
-    land = Entry(("bearing", "land", "clearance"), running_clearance(scene))
     return {
         **prefixed("bearing", bearing_entries(scene.bearing)),
-        "land_clearance": land,
-        "replenishment": Entry(("effects", "replenishment"), _decline(scene)),
+        "land_clearance": Entry(("bearing", "land", "clearance"), running_clearance(scene)),
         **prefixed("lubricant", lubricant_entries(scene.lubricant)),
         **prefixed("effects", effects_entries(scene.effects)),
         **prefixed("effects", rib_entries(scene.bearing, scene.effects)),
+        "replenishment": Entry(("effects", "replenishment"), _decline(scene)),
         "n_slices": Entry(("effects", "n_slices"), float(nodes(scene))),
-        "outer_turns": Entry(("outer_speed_rpm",), float(scene.outer_turns)),
         **ring_entries(scene),
         **housing_entries(scene),
+        "outer_turns": Entry(("outer_speed_rpm",), float(scene.outer_turns)),
         **elastic_entries(scene),
     }
 
@@ -237,33 +235,25 @@ def rib_entries(bearing: Bearing, effects: Effects) -> Entries:
 
 def ring_entries(scene: Scene) -> Entries:
     """Numbers of a free ring, by their names in the core's table; zero where there is none. Paths start at the scene."""
-    body = scene.ring_body
-    none = {name: Entry(("ring",), 0.0) for name in PARAMETERS if name.startswith("ring_")}
-    if body is None:
-        return none
-    return {
-        **none,
-        **prefixed("ring_body", named_entries(body)),
-        "ring_free": Entry(("ring",), 1.0 if scene.torque is None else 2.0),
-        "ring_unbalance_angle": Entry(("ring_body", "unbalance_angle_deg"), math.radians(body.unbalance_angle_deg)),
-    }
+    found = {name: Entry(("ring",), 0.0) for name in PARAMETERS if name.startswith("ring_")}
+    if (body := scene.ring_body) is not None:
+        found |= named_entries(body, "ring_body")
+        found["ring_free"] = Entry(("ring",), 1.0 if scene.torque is None else 2.0)
+        angle = math.radians(body.unbalance_angle_deg)
+        found["ring_unbalance_angle"] = Entry(("ring_body", "unbalance_angle_deg"), angle)
+    return found
 
 
 def housing_entries(scene: Scene) -> Entries:
     """Numbers of an outer ring with its housing, by their names in the core's table; zero where it is held."""
-    # its fields name the parameters of an inner ring; the core has the same ones for both
-    names = {
-        str(extra["parameter"]).replace("ring_", "outer_", 1): name
-        for name, field in Housing.model_fields.items()
-        if isinstance(extra := field.json_schema_extra, dict) and "parameter" in extra
-    }
-    body = scene.housing
-    return {
-        "outer_free": Entry(("housing",), float(body is not None)),
-        "outer_carried": Entry(("housing",), 0.0),
-        "outer_turned": Entry(("housing",), 0.0),
-        **{key: Entry(("housing", name), 0.0 if body is None else getattr(body, name)) for key, name in names.items()},
-    }
+    of_ring = [name for name, row in PARAMETERS.items() if row.part == "outer_ring" and name != "outer_turns"]
+    found = {name: Entry(("housing",), 0.0) for name in of_ring}
+    if scene.housing is not None:
+        # its fields name the parameters of an inner ring; the core has the same ones for both
+        own = named_entries(scene.housing, "housing")
+        found |= {name.replace("ring_", "outer_", 1): entry for name, entry in own.items()}
+        found["outer_free"] = Entry(("housing",), 1.0)
+    return found
 
 
 def elastic_entries(scene: Scene) -> Entries:
@@ -289,7 +279,7 @@ def _face_row(columns: list[tuple[str, int]], pocket: int, face: Face) -> list[f
     values: dict[str, list[float]] = {
         "pocket": [pocket],
         "slot": [face.slot],
-        "part": [PARTS[face.part]],
+        "part": [CODES["part"][face.part]],
         "origin": list(face.origin),
         "u": list(face.u),
         "v": list(face.v),
@@ -375,16 +365,10 @@ def motion_table(
     ]
     gravity = _gravity(scene)
     channels: dict[str, float | History] = {
-        "displacement_x": ring[0],
-        "displacement_y": ring[1],
-        "displacement_z": ring[2],
-        "rotation_x": ring[3],
-        "rotation_y": ring[4],
+        **dict(zip(RING_PLACES, ring, strict=True)),
         "shaft_speed": scaled(scene.speed_rpm, math.pi / 30.0),
         "outer_speed": scaled(scene.outer_speed_rpm, math.pi / 30.0),
-        "gravity_x": gravity[0],
-        "gravity_y": gravity[1],
-        "gravity_z": gravity[2],
+        **{f"gravity_{axis}": part for axis, part in zip("xyz", gravity, strict=True)},
         **_loads_on_free_ring(scene),
         **dict.fromkeys(HOUSING_LOADS, 0.0),
     }
@@ -420,13 +404,9 @@ def parts_of(load: Load) -> tuple[tuple[float, float | History], ...]:
 
 def loads_period(scene: Scene, loads: Mapping[str, Load]) -> float | None:
     """Common period of a scene and of loads that act besides (s), None if nothing repeats; it must be there if both repeat."""
-    periods = {
-        name: load.times[-1] - load.times[0]
-        for name, several in loads.items()
-        for _, load in parts_of(several)
-        if isinstance(load, History) and load.repeats
-    }
-    return common_period(periods if scene.period is None else {"scene": scene.period} | periods)
+    own = {} if scene.period is None else {"scene": scene.period}
+    parts = {f"{name}[{place}]": part for name, load in loads.items() for place, (_, part) in enumerate(parts_of(load))}
+    return common_period(own | periods_of(parts))
 
 
 def load_channels() -> list[str]:

@@ -389,6 +389,11 @@ def settled_time(quantities: Sequence[float | History], start: float) -> float:
     return max([start, *(q.times[-1] for q in quantities if isinstance(q, History) and not q.repeats)])
 
 
+def periods_of(quantities: Mapping[str, float | History]) -> dict[str, float]:
+    """Periods (s) of those quantities that repeat, by their names."""
+    return {name: q.period for name, q in quantities.items() if isinstance(q, History) and q.period is not None}
+
+
 def common_period(periods: Mapping[str, float]) -> float | None:
     """The shortest time after which everything that repeats, by the field's name, begins again together (s); None if there is
     nothing. Refused if there is none within `MOST_REPETITIONS`.

@@ -26,6 +26,7 @@ from trbdyn.model.motion import (
     common_period,
     is_constant,
     knot_times,
+    periods_of,
     settled_time,
     value_at,
     values_of,
@@ -325,12 +326,7 @@ class Scene(TurningRings, Model):
         InputError
             If two quantities never repeat together.
         """
-        periods = {
-            name: quantity.times[-1] - quantity.times[0]
-            for name, quantity in self.quantities().items()
-            if isinstance(quantity, History) and quantity.repeats
-        }
-        return common_period({**self._rotation_period(), **periods})
+        return common_period(self._rotation_period() | periods_of(self.quantities()))
 
     def _rotation_period(self) -> dict[str, float]:
         rotating = self.rotating_load
