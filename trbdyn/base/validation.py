@@ -11,7 +11,7 @@ import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StrictBool, ValidationError
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StrictBool, ValidationError, model_validator
 
 from trbdyn.base.shown import Displayed, Shown, field_rows
 from trbdyn.errors import InputError, Path, from_validation_error, join_path, unknown_name
@@ -216,6 +216,14 @@ class Model(Displayed, BaseModel, metaclass=_Listed):
             super().__init__(**fields)
         except ValidationError as error:
             raise from_validation_error(error, type(self).model_fields, self._path_root()) from None
+
+    @model_validator(mode="after")
+    def _check_whole(self) -> Self:
+        self._check()
+        return self
+
+    def _check(self) -> None:
+        """Refuse what does not fit together, by an `InputError`; every field is right by itself."""
 
     @classmethod
     def _path_root(cls) -> tuple[str, ...]:

@@ -7,8 +7,6 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Annotated, Any, Final, Literal, Self
 
-from pydantic import model_validator
-
 from trbdyn.base.shown import Shown
 from trbdyn.base.validation import Model, unit
 from trbdyn.errors import InputError
@@ -282,8 +280,7 @@ class Assembly(TurningRings, Model):
             gravity=(x, scaled(y, turned), scaled(z, turned)),
         )
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self) -> None:
         if len(self.bearings) < 2:
             limit = "must be two or more; a Scene with ring = 'free' is a shaft on one bearing"
             raise InputError.of("bearings", len(self.bearings), limit)
@@ -295,7 +292,6 @@ class Assembly(TurningRings, Model):
         self._check_places()
         self._check_held()
         self._check_housings()
-        return self
 
     def _check_names(self) -> None:
         for index, name in enumerate(self.names):

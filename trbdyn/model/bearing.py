@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from functools import cached_property
-from typing import Annotated, Any, Final, Self
+from typing import Annotated, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -330,8 +330,7 @@ class Bearing(Catalogued):
                 allowed = f"must go from {-half:g} to {half:g}: over the effective length (m)"
                 raise InputError.of((*path, "stations"), profile.stations, allowed)
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self) -> None:
         self._check_kind()
         self._check_clearances()
         self._check_profiles()
@@ -352,7 +351,6 @@ class Bearing(Catalogued):
             raise InputError(impossible)
         self._check_pockets(self.geometry)
         check_boundary(self, bore=self.bore, outside=self.outside, width=self.width)
-        return self
 
     def _check_pockets(self, geometry: Geometry) -> None:
         try:

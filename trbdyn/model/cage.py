@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Annotated, ClassVar, Self
-
-from pydantic import model_validator
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from trbdyn.base.validation import Gap, Length, Model, Number, unit
 from trbdyn.errors import InputError
@@ -138,8 +136,7 @@ class Cage(Model):
             raise InputError.of(("material", "density"), None, "must be given: the cage's mass follows from it (kg/m3)")
         return cls(**drawn.fields(density), material=material)
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self) -> None:
         given = self.model_fields_set
         if {"inertia_axial", "inertia_transverse"} <= given and self.inertia_axial > 2.0 * self.inertia_transverse:
             limit = f"must be <= 2 inertia_transverse, {2 * self.inertia_transverse:g} (kg m2): no body has more"
@@ -154,4 +151,3 @@ class Cage(Model):
         for place, index in enumerate(indices):
             if index in indices[:place]:
                 raise InputError.of(("other_pockets", place, "index"), index, "must differ from the other indices")
-        return self

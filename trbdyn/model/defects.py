@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Annotated, ClassVar, Final, Literal, Self
+from typing import Annotated, ClassVar, Final, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from trbdyn.base.validation import Length, Model, Number, Whole, unit
 from trbdyn.errors import InputError
@@ -74,10 +74,8 @@ class Pit(Model):
     position: Annotated[Number, unit("m")] = 0.0
     roller: Annotated[Whole, unit("1", ge=0)] = 0
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self) -> None:
         _check_roller(self.on, self.roller)
-        return self
 
 
 class DepthMap(Model):
@@ -127,8 +125,7 @@ class DepthMap(Model):
     angle_deg: Annotated[Number, unit("deg")] = 0.0
     roller: Annotated[Whole, unit("1", ge=0)] = 0
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self) -> None:
         _check_roller(self.on, self.roller)
         for name in ("along", "across"):
             places = getattr(self, name)
@@ -146,7 +143,6 @@ class DepthMap(Model):
         for i in (0, len(self.along) - 1):
             if any(self.depth[i]):
                 raise InputError.of(("depth", i), self.depth[i], "must be 0: the map ends there (m)")
-        return self
 
 
 class Waviness(Model):
@@ -193,15 +189,13 @@ class Waviness(Model):
     phases_deg: tuple[Annotated[Number, unit("deg")], ...] | None = None
     roller: Annotated[Whole | None, unit("1", ge=0)] = None
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self) -> None:
         for name in ("amplitudes", "phases_deg"):
             given = getattr(self, name)
             if given is not None and len(given) != len(self.orders):
                 raise InputError.of(name, len(given), f"must have {len(self.orders)} numbers, one for each order")
         if self.roller is not None and self.on != "roller":
             raise InputError.of("roller", self.roller, f"must not be given: on = {self.on!r}")
-        return self
 
 
 Defect = Annotated[Pit | DepthMap | Waviness, Field(discriminator="kind")]

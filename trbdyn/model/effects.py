@@ -68,13 +68,11 @@ class Friction(Model):
     thermal_floor: Annotated[Number, parameter("thermal_floor")] = 0.05
     rolling_blend: Annotated[Number, parameter("rolling_blend")] = 0.1
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self) -> None:
         if self.lambda_full <= self.lambda_boundary:
             raise InputError.of(
                 "lambda_full", self.lambda_full, f"must be > lambda_boundary, {self.lambda_boundary:g} (1)"
             )
-        return self
 
 
 def refuse_idle(damping: str, lubrication: str, given: Mapping[str, Any]) -> None:
@@ -258,15 +256,13 @@ class Effects(Model):
             values = {**values, "replenishment": REPLENISHMENT[state].value}
         return values
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self) -> None:
         if self.rolling_pressure_force and not self.rolling_resistance:
             raise InputError.of("rolling_pressure_force", True, "needs rolling_resistance = True")
         if self.guidance != "rollers" and not self.has_cage:
             raise InputError.of("guidance", self.guidance, "needs a cage: bodies = 'rollers_and_cage'")
         if self.n_slices == 1 and not self.back_rib:
             raise InputError.of("n_slices", 1, "must be >= 2 without back_rib: one slice lets rollers tilt freely")
-        return self
 
     def replace(self, changes: Mapping[str, Any] | None = None, /, **fields: Any) -> Self:
         """As of every input; a coefficient of damping that would act nowhere is refused."""

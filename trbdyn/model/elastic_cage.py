@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar, Final, Self
+from typing import TYPE_CHECKING, Annotated, ClassVar, Final
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from trbdyn.base.own_files import digest_of
 from trbdyn.base.validation import Model, Number, Whole, unit
@@ -64,8 +64,7 @@ class ElasticCage(Model):
     file: Annotated[str | None, Field(min_length=1)] = None
     file_sha256: Annotated[str | None, Field(min_length=64, max_length=64)] = None
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self) -> None:
         if self.file is not None and self.cracked_bars:
             raise InputError.of(
                 "cracked_bars", self.cracked_bars, "must not be given with a file, whose modes know its cracks"
@@ -77,7 +76,6 @@ class ElasticCage(Model):
                 object.__setattr__(self, "file_sha256", digest_of(self.file))
             except FileError as error:
                 raise InputError.of("file", self.file, f"must be a file of modes: {error}") from None
-        return self
 
 
 def check_elastic_cage(scene: Scene) -> None:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Annotated, Final, Self
 
-from pydantic import model_validator
-
 from trbdyn.base.validation import Model, Number, number_of, unit
 from trbdyn.errors import InputError
 
@@ -57,13 +55,11 @@ class HeatPaths(Model):
     oil_inlet_c: Celsius = 20.0
     oil_share: Annotated[Number, unit("1", ge=0, le=1)] = 0.5
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self) -> None:
         if not self.outer_ring_to_surroundings + self.inner_ring_to_surroundings + self.oil_flow > 0.0:
             raise InputError.of(
                 "outer_ring_to_surroundings", 0.0, "or inner_ring_to_surroundings, or oil_flow, must be above 0 (W/K)"
             )
-        return self
 
     @classmethod
     def reference(cls, *, bore: float, outside: float, width: float, **others: float) -> Self:

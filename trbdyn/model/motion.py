@@ -16,7 +16,6 @@ from typing import Annotated, Any, Self
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
-from pydantic import model_validator
 
 from trbdyn.base.validation import Flag, Model, Number, as_number, number_of, unit
 from trbdyn.errors import InputError
@@ -67,8 +66,7 @@ class History(Model):
     slopes: tuple[Number, ...] | None = None
     repeats: Flag = False
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self) -> None:
         if len(self.times) < 2:
             raise InputError.of("times", self.times, "must have at least two entries (s)")
         for name, given in (("values", self.values), ("slopes", self.slopes)):
@@ -89,7 +87,6 @@ class History(Model):
                     limit = f"must be {given[0]:g} as the first: a history that repeats ends as it begins"
                     raise InputError.of((name, len(given) - 1), given[-1], limit)
         self._check_curve(steps)
-        return self
 
     def _check_curve(self, steps: FloatArray) -> None:
         with np.errstate(all="ignore"):

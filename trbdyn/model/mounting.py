@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Final, Literal, Self
 
-from pydantic import model_validator
-
 from trbdyn.base.validation import Gap, Length, Model, Number, unit
 from trbdyn.errors import InputError
 from trbdyn.model.material import Material
@@ -75,8 +73,7 @@ class Mounting(Model):
     smoothing: Annotated[Number, unit("m", ge=0.0, le=0.1)] = GROUND
     reference_c: Celsius = 20.0
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self) -> None:
         if not self.outside > self.bore:
             raise InputError.of("outside", self.outside, f"must be above the bore, {self.bore:g} (m)")
         if not self.shaft_bore < self.bore:
@@ -97,7 +94,6 @@ class Mounting(Model):
                 raise InputError.of("clearance", self.clearance, limit)
         elif self.clearance[0] > self.clearance[1]:
             raise InputError.of("clearance", self.clearance, "must be the smallest and then the largest one (m)")
-        return self
 
     @property
     def outer_housing(self) -> float:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Annotated, Any, ClassVar, Final, Literal, Self
 
-from pydantic import field_validator, model_validator
+from pydantic import field_validator
 
 from trbdyn.base.validation import Model, Number, number_of, unit
 from trbdyn.errors import InputError
@@ -240,8 +240,7 @@ class ShaftBearing(Model):
     def _oil_by_name(cls, given: Any) -> Any:
         return oil_by_name(given)
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self) -> None:
         if self.spring is not None and self.end_play != 0.0:
             limit = "must be 0 with a spring, which moves the outer ring to the rollers (m)"
             raise InputError.of("end_play", self.end_play, limit)
@@ -252,7 +251,6 @@ class ShaftBearing(Model):
                     f"must be {stiffness:g}, the stiffness of the spring that holds the outer ring along the axis (N/m)"
                 )
                 raise InputError.of(("housing", "support_axial"), self.housing.support_axial, limit)
-        return self
 
     @property
     def side(self) -> float:

@@ -7,11 +7,11 @@ right-handed.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from trbdyn.base.validation import Flag, Model, Number, Ratio, Vector3, Whole, unit
 from trbdyn.errors import InputError, Problem
@@ -63,8 +63,7 @@ class Face(Model):
     stiffness_factor: Annotated[Number, unit("1", gt=0)] = 1.0
     friction_factor: Ratio = 1.0
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self) -> None:
         u, v = np.array(self.u), np.array(self.v)
         for name, vector in (("u", u), ("v", v)):
             if abs(float(vector @ vector) - 1.0) > 2 * _UNIT_TOLERANCE:
@@ -88,7 +87,6 @@ class Face(Model):
                 self.outline,
                 "must be convex, counter-clockwise seen from the roller, with an area and no idle vertex",
             )
-        return self
 
     @property
     def normal(self) -> FloatArray:
@@ -138,8 +136,7 @@ class Pocket(Model):
     faces: Annotated[tuple[Face, ...], Field(min_length=1)]
     allow_interference: Flag = False
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self) -> None:
         names = [face.name for face in self.faces]
         parts: dict[int, Part] = {}
         for place, face in enumerate(self.faces):
@@ -151,7 +148,6 @@ class Pocket(Model):
                     f"must be '{part}', as that of the other faces with slot {face.slot}: together they are one surface"
                 )
                 raise InputError.of(("faces", place, "part"), face.part, limit)
-        return self
 
     @property
     def surfaces(self) -> tuple[Face, ...]:

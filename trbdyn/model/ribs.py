@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Final, Literal, Self
-
-from pydantic import model_validator
+from typing import Annotated, ClassVar, Final, Literal
 
 from trbdyn.base.validation import Model, Number
 from trbdyn.errors import InputError
@@ -66,8 +64,7 @@ class Ribs(Model):
         """Whether ribs of a cylindrical bearing carry an axial force on the inner ring (N): NJ one towards -z, NUP either."""
         return force < 0.0 if self.flanges == "NJ" else self.flanges == "NUP" and force != 0.0
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self) -> None:
         given = self.model_fields_set
         if {"contact_height", "edge_low"} <= given and self.edge_low >= self.contact_height:
             limit = f"must be > edge_low, {self.edge_low:g}: between the rib's edges (m)"
@@ -77,4 +74,3 @@ class Ribs(Model):
             raise InputError.of("contact_height", self.contact_height, limit)
         if {"front_high", "front_low"} <= given and self.front_high <= self.front_low:
             raise InputError.of("front_high", self.front_high, f"must be > front_low, {self.front_low:g} (m)")
-        return self

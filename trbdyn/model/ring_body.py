@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
-from pydantic import model_validator
-
 from trbdyn.base.validation import Model, Number, number_of, unit
 from trbdyn.errors import MISSING, InputError
 from trbdyn.model.core_table import parameter
@@ -23,13 +21,11 @@ class Revolved(Model):
     inertia_axial: Annotated[Number, parameter("ring_inertia_axial", gt=0.0)]
     inertia_transverse: Annotated[Number, parameter("ring_inertia_transverse", gt=0.0)]
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self) -> None:
         most = 2.0 * self.inertia_transverse
         if self.inertia_axial > most * (1.0 + 1e-9):
             limit = f"must be <= {most:.6g}: no body has more than twice its inertia_transverse (kg m2)"
             raise InputError.of("inertia_axial", self.inertia_axial, limit)
-        return self
 
     @classmethod
     def hollow_cylinder(

@@ -8,7 +8,6 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import model_validator
 
 from trbdyn.base.validation import Model, Number, Whole, unit
 from trbdyn.errors import InputError
@@ -67,15 +66,13 @@ class Profile(Model):
     stations: tuple[Annotated[Number, unit("m", ge=-1, le=1)], ...] = ()
     drops: tuple[Annotated[Number, unit("m", ge=-1e-3, le=1e-3)], ...] = ()
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self) -> None:
         if self.kind != "table":
-            return self
+            return
         if len(self.stations) < 2 or np.any(np.diff(self.stations) <= 0.0):
             raise InputError.of("stations", self.stations, "must be two or more rising places (m)")
         if len(self.drops) != len(self.stations):
             raise InputError.of("drops", self.drops, f"must have one entry for each station, {len(self.stations)} (m)")
-        return self
 
     @classmethod
     def straight(cls) -> Self:
@@ -222,8 +219,7 @@ class Roller(Model):
     end_stiffness: Annotated[Number, parameter("end_stiffness")] = RIG["end_stiffness"]
     material: Material | None = None
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self) -> None:
         if "total_length" in self.model_fields_set and self.total_length < self.effective_length:
             limit = f"must be >= effective_length, {self.effective_length:g} (m)"
             raise InputError.of("total_length", self.total_length, limit)
@@ -231,4 +227,3 @@ class Roller(Model):
             raise InputError.of(
                 "diameter_scatter", self.diameter_scatter, "must not be given together with diameter_deviation"
             )
-        return self

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Self
-
-from pydantic import model_validator
+from typing import Annotated, Any, ClassVar
 
 from trbdyn.base.validation import Model, Number, unit
 from trbdyn.errors import MISSING, InputError
@@ -47,12 +45,10 @@ class RotatingLoad(Model):
     def __init__(self, load: Any = MISSING, **fields: Any) -> None:
         super().__init__(**fields if load is MISSING else {"load": load, **fields})
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self) -> None:
         check_sign("load", self.load)
         if self.frequency_hz is not None and self.turns != 1.0:
             raise InputError.of("turns", self.turns, "must not be given together with frequency_hz")
-        return self
 
 
 def check_sign(name: str, load: float | History) -> None:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import field_validator, model_validator
+from pydantic import field_validator
 
 from trbdyn.base.shown import Shown, field_rows
 from trbdyn.base.validation import Model, unit
@@ -347,8 +347,7 @@ class Scene(TurningRings, Model):
         final = speed.values[-1] if isinstance(speed, History) else speed
         return {"rotating_load": 60.0 / abs(final * rotating.turns)} if final * rotating.turns else {}
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self) -> None:
         self._place_floating_ring()
         self._check_motion()
         check_free_ring(self)
@@ -371,7 +370,6 @@ class Scene(TurningRings, Model):
             )
         parameter_block(self)
         form_rows(self)
-        return self
 
     def _check_motion(self) -> None:
         self.check_speeds()

@@ -7,7 +7,6 @@ from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from pydantic import model_validator
 
 from trbdyn.base.validation import Model, Number, Whole, unit
 from trbdyn.errors import InputError
@@ -82,8 +81,7 @@ class Start(Model):
     displacement: tuple[Number, Number, Number, Number, Number] | None = None
     housing_load: tuple[Number, Number, Number, Number, Number] | None = None
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self) -> None:
         if (self.kind == "state") != bool(self.state_vector):
             allowed = (
                 "must be given for a start from a state"
@@ -95,7 +93,6 @@ class Start(Model):
             given = getattr(self, name)
             if self.kind != "state" and given is not None:
                 raise InputError.of(name, given, f"belongs to a start from a state only ({of})")
-        return self
 
     @classmethod
     def equal(cls) -> Self:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal, Self, get_args
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal, get_args
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from trbdyn.base.validation import Model, Number, Whole, unit
 from trbdyn.errors import InputError
@@ -145,11 +145,9 @@ class RunOptions(Model):
 
     _root: ClassVar[str | None] = "run"
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self) -> None:
         if self.revolutions is not None and self.duration is not None:
             raise InputError.of("duration", self.duration, "must not be given together with revolutions (s)")
-        return self
 
     @property
     def tolerances(self) -> Tolerances:

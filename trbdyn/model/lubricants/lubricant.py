@@ -79,8 +79,7 @@ class Oil(Model):
     conductivity: Annotated[Number, parameter("conductivity")] = 0.134
     eyring_stress: Annotated[Number, parameter("eyring_stress")] = 5e6
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self) -> None:
         for name, value in (("nu40", self.nu40), ("nu100", self.nu100)):
             if value is None and self.vogel is None:
                 raise InputError.of(name, value, "must be given, or vogel (mm2/s)")
@@ -91,7 +90,6 @@ class Oil(Model):
         if self.dicke is not None and self.pressure_coefficient is not None:
             limit = "must not be given together with dicke, whose slope at zero pressure it is (1/Pa)"
             raise InputError.of("pressure_coefficient", self.pressure_coefficient, limit)
-        return self
 
     def __repr__(self) -> str:
         known = f"{self.nu40:g} and {self.nu100:g} mm2/s at 40 and 100 C" if self.vogel is None else "law of Vogel"
@@ -262,15 +260,13 @@ class Lubricant(Model):
         found.setdefault("name", f"{oil.name} at {temperature:g} C")
         return found
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def _check(self) -> None:
         if self.pressure_law == "dicke":
             self._check_dicke()
         if self.pressure_law == "roelands" and self.viscosity <= _ROELANDS_VISCOSITY:
             raise InputError.of(
                 "viscosity", self.viscosity, f"must be > {_ROELANDS_VISCOSITY:g}, where the Roelands law ends (Pa s)"
             )
-        return self
 
     def _check_dicke(self) -> None:
         law, temperature = self.dicke, self.temperature_c
