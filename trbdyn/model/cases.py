@@ -205,12 +205,8 @@ def scene_32216(
 
     Parameters
     ----------
-    speed_rpm : float
-        Speed of the inner ring (rpm): its torque is known at those of `MEASURED_TORQUE_32216`.
-    axial_load, radial_load : float
-        Loads (N).
-    **changes
-        Other fields of `Scene`.
+    speed_rpm, axial_load, radial_load, **changes
+        As in `scene_30310`; the torque is known at the speeds of `MEASURED_TORQUE_32216`.
     """
     return _scene(bearing_32216, 50.0, speed_rpm, axial_load, radial_load, changes)
 
@@ -242,12 +238,8 @@ def scene_nj210(
 
     Parameters
     ----------
-    speed_rpm : float
-        Speed of the inner ring (rpm).
-    axial_load, radial_load : float
-        Loads (N); the axial one is carried by a rib of each ring.
-    **changes
-        Other fields of `Scene`.
+    speed_rpm, axial_load, radial_load, **changes
+        As in `scene_30310`; the axial load is carried by a rib of each ring.
     """
     return _scene(bearing_nj210, 60.0, speed_rpm, axial_load, radial_load, changes)
 

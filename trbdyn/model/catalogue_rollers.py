@@ -177,25 +177,22 @@ class Rollers:
     angle: float
 
     @property
+    def _sizes(self) -> dict[str, float]:
+        return {
+            "n_rollers": self.count,
+            "roller_diameter": self.diameter,
+            "roller_length": self.length,
+            "pitch_diameter": self.pitch,
+            "contact_angle_deg": self.angle,
+        }
+
+    @property
     def rating(self) -> float:
-        return rating_iso281(
-            n_rollers=self.count,
-            roller_diameter=self.diameter,
-            roller_length=self.length,
-            pitch_diameter=self.pitch,
-            contact_angle_deg=self.angle,
-        )
+        return rating_iso281(**self._sizes)
 
     def with_static_rating(self, static: float) -> Rollers:
         """The same with the length that has this rating of ISO 76 (N)."""
-        now = rating_iso76(
-            n_rollers=self.count,
-            roller_diameter=self.diameter,
-            roller_length=self.length,
-            pitch_diameter=self.pitch,
-            contact_angle_deg=self.angle,
-        )
-        return replace(self, length=self.length * static / now)
+        return replace(self, length=self.length * static / rating_iso76(**self._sizes))
 
     def walls(self, page: Page) -> float:
         """Thickness of the thinner ring where it is thinnest (m): the cup at the large ends, the cone at the small ones.

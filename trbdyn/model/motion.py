@@ -18,7 +18,7 @@ import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from trbdyn.base.validation import Flag, Model, Number, as_number, number_of, unit
-from trbdyn.errors import InputError
+from trbdyn.errors import InputError, Path
 
 FloatArray = NDArray[np.float64]
 
@@ -379,6 +379,13 @@ def values_of(quantity: float | History) -> tuple[float, ...]:
 def is_constant(quantity: float | History) -> bool:
     """Whether a quantity never changes."""
     return len(set(values_of(quantity))) == 1
+
+
+def check_size(path: str | Path, quantity: float | History, most: float, symbol: str) -> None:
+    """Refuse a quantity that is beyond a size at some time, in one direction or the other."""
+    largest = max(values_of(quantity), key=abs)
+    if abs(largest) > most:
+        raise InputError.of(path, largest, f"must be from {-most:.4g} to {most:.4g} ({symbol})")
 
 
 def settled_time(quantities: Sequence[float | History], start: float) -> float:

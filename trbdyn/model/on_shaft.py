@@ -6,8 +6,6 @@ import math
 from collections.abc import Sequence
 from typing import Annotated, Any, ClassVar, Final, Literal, Self
 
-from pydantic import field_validator
-
 from trbdyn.base.validation import Model, Number, number_of, unit
 from trbdyn.errors import InputError
 from trbdyn.model.bearing import Bearing
@@ -16,10 +14,9 @@ from trbdyn.model.defects import Defect
 from trbdyn.model.effects import Effects
 from trbdyn.model.elastic_cage import ElasticCage
 from trbdyn.model.growth import Growth
-from trbdyn.model.lubricants import Lubricant, vg100
+from trbdyn.model.lubricants.shipped import AnyLubricant, vg100
 from trbdyn.model.motion import Quantity
 from trbdyn.model.ring_body import Housing, Revolved
-from trbdyn.model.scene import oil_by_name
 from trbdyn.model.start import Start
 
 MAX_END_PLAY: Final = 3e-4
@@ -224,7 +221,7 @@ class ShaftBearing(Model):
     end_play: Annotated[Number, unit("m", ge=-MAX_END_PLAY, le=MAX_END_PLAY)] = 0.0
     spring: PreloadSpring | None = None
     name: str = ""
-    lubricant: Lubricant = vg100()
+    lubricant: AnyLubricant = vg100()
     effects: Effects = Effects()
     start: Start = Start()
     growth: Growth | None = None
@@ -234,11 +231,6 @@ class ShaftBearing(Model):
 
     def __init__(self, bearing: Any = None, **fields: Any) -> None:
         super().__init__(**fields if bearing is None else {"bearing": bearing, **fields})
-
-    @field_validator("lubricant", mode="before")
-    @classmethod
-    def _oil_by_name(cls, given: Any) -> Any:
-        return oil_by_name(given)
 
     def _check(self) -> None:
         if self.spring is not None and self.end_play != 0.0:

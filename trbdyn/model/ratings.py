@@ -92,12 +92,8 @@ def rating_iso76(
 
     Parameters
     ----------
-    n_rollers : float
-        Z.
-    roller_diameter, roller_length, pitch_diameter : float
-        Dwe, Lwe, Dpw (m).
-    contact_angle_deg : float
-        alpha, half angle of the cup (deg).
+    n_rollers, roller_diameter, roller_length, pitch_diameter, contact_angle_deg : float
+        As in `rating_iso281`.
 
     Returns
     -------

@@ -11,7 +11,7 @@ from pydantic import field_validator
 
 from trbdyn.base.shown import Shown, field_rows
 from trbdyn.base.validation import Model, unit
-from trbdyn.errors import MISSING, InputError, Path, Problem
+from trbdyn.errors import MISSING, InputError, Path
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.defect_rows import form_rows
 from trbdyn.model.defects import Defect
@@ -19,10 +19,11 @@ from trbdyn.model.effects import Effects
 from trbdyn.model.elastic_cage import ElasticCage, check_elastic_cage
 from trbdyn.model.flatten import parameter_block
 from trbdyn.model.growth import Growth, grown_pocket, plays, running_pockets, strains
-from trbdyn.model.lubricants import OILS, Lubricant, vg100
+from trbdyn.model.lubricants.shipped import AnyLubricant, vg100
 from trbdyn.model.motion import (
     History,
     Quantity,
+    check_size,
     common_period,
     is_constant,
     knot_times,
@@ -43,16 +44,6 @@ MAX_GRAVITY = 1e7
 """Largest part of gravity (m/s2), a million times the usual: no machine shakes harder, and nothing overflows."""
 LEAST_ACROSS = 1e-3
 """Radial load (N) of a ring with clearance below which the balance of forces does not say where it stands."""
-
-
-def oil_by_name(given: Any) -> Any:
-    """The name of an oil that ships stands for it at 60 C; anything else is given back."""
-    if not isinstance(given, str):
-        return given
-    if given.lower() not in OILS:
-        limit = f"must be one of {', '.join(OILS)}, a Lubricant, or an Oil at a temperature: oil.at(60.0)"
-        raise InputError([Problem((), given, limit)])
-    return OILS[given.lower()]()
 
 
 class Scene(TurningRings, Model):
@@ -139,7 +130,7 @@ class Scene(TurningRings, Model):
     rotating_load: RotatingLoad | None = None
     displacement: tuple[Quantity | None, Quantity | None, Quantity | None] | None = None
     unloaded: Literal["refused", "rests"] = "refused"
-    lubricant: Lubricant = vg100()
+    lubricant: AnyLubricant = vg100()
     effects: Effects = Effects()
     start: Start = Start()
     ring: Literal["held", "follows", "free"] = "held"
@@ -156,11 +147,6 @@ class Scene(TurningRings, Model):
 
     def __hash__(self) -> int:
         return hash(self.fingerprint)
-
-    @field_validator("lubricant", mode="before")
-    @classmethod
-    def _oil_by_name(cls, given: Any) -> Any:
-        return oil_by_name(given)
 
     @field_validator("displacement", mode="before")
     @classmethod
@@ -376,12 +362,7 @@ class Scene(TurningRings, Model):
         if self.outer_turns:
             self._check_outer()
         for place, quantity in enumerate(self.gravity):
-            pull = max(values_of(quantity), key=abs)
-            if abs(pull) > MAX_GRAVITY:
-                raise InputError.of(
-                    ("gravity", place), pull, f"must be from {-MAX_GRAVITY:g} to {MAX_GRAVITY:g} (m/s2)"
-                )
-        largest = math.radians(5.0)
+            check_size(("gravity", place), quantity, MAX_GRAVITY, "m/s2")
         for axis, moment, turn in (
             ("x", self.moment_x, self.misalignment_x),
             ("y", self.moment_y, self.misalignment_y),
@@ -390,17 +371,9 @@ class Scene(TurningRings, Model):
                 raise InputError.of(
                     f"moment_{axis}", moment, f"must not be given together with misalignment_{axis} (N m)"
                 )
-            angle = max(values_of(turn), key=abs)
-            if abs(angle) > largest:
-                raise InputError.of(
-                    f"misalignment_{axis}", angle, f"must be from {-largest:.4g} to {largest:.4g} (rad)"
-                )
-        if self.displacement is not None:
-            limit = self.bearing.roller.diameter
-            for place, given in enumerate(self.displacement):
-                shift = 0.0 if given is None else max(values_of(given), key=abs)
-                if abs(shift) > limit:
-                    raise InputError.of(("displacement", place), shift, f"must be from {-limit:g} to {limit:g} (m)")
+            check_size(f"misalignment_{axis}", turn, math.radians(5.0), "rad")
+        for place, given in enumerate(self.displacement or ()):
+            check_size(("displacement", place), 0.0 if given is None else given, self.bearing.roller.diameter, "m")
 
     def _check_outer(self) -> None:
         """What is not known yet of a bearing whose outer ring turns."""

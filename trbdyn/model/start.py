@@ -141,29 +141,24 @@ class Start(Model):
         ----------
         vector : State, or array_like of shape (n_state,)
             `Simulation.state`, which knows everything else, too; or the core's state vector alone.
-        time : float, optional
-            The time it belongs to (s); by default that of the `State`, or 0.
-        shaft_angle : float, optional
-            Angle of the shaft at that time (rad), for instance `Simulation.state.shaft_angle`; by default what the
-            shaft has turned by since t = 0. It must be given where the saved run itself did not start at t = 0.
-        displacement : array_like, shape (5,), optional
-            Where the inner ring stands: `Simulation.state.displacement`. Without it a ring that is held is placed again, at the
-            equilibrium at `time`; where the speed changes that is another place than that of the saved run.
-        housing_load : array_like, shape (5,), optional
-            What the support of a housing carried where the saved run began: `Simulation.state.housing_load`.
+        time, shaft_angle, displacement, housing_load : optional
+            As in `State`, whose own they replace. A vector alone is at time 0, and the shaft's angle is what it has turned by
+            since then, which is wrong where the saved run itself did not start at t = 0. A ring that is held is then placed
+            again, at the equilibrium at `time`; where the speed changes that is another place than that of the saved run.
         """
+        given = {
+            "time": time,
+            "shaft_angle": shaft_angle,
+            "displacement": displacement,
+            "housing_load": housing_load,
+        }
+        fields: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
         if isinstance(vector, State):
-            time = vector.time if time is None else time
-            shaft_angle = vector.shaft_angle if shaft_angle is None else shaft_angle
-            displacement = vector.displacement if displacement is None else displacement
-            housing_load = vector.housing_load if housing_load is None else housing_load
+            fields = {name: getattr(vector, name) for name in given if getattr(vector, name) is not None} | fields
             vector = vector.vector
-        numbers = _numbers("state_vector", vector)
-        given = {"displacement": displacement, "housing_load": housing_load}
-        fields: dict[str, Any] = {name: _numbers(name, value) for name, value in given.items() if value is not None}
-        return cls(
-            kind="state", state_vector=numbers, time=0.0 if time is None else time, shaft_angle=shaft_angle, **fields
-        )
+        arrays = ("displacement", "housing_load")
+        fields |= {name: _numbers(name, fields[name]) for name in arrays if name in fields}
+        return cls(kind="state", state_vector=_numbers("state_vector", vector), **fields)
 
 
 def _numbers(name: str, given: ArrayLike) -> tuple[float, ...]:

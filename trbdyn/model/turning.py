@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, Literal
 
-from trbdyn.errors import InputError
-from trbdyn.model.motion import History, value_at, values_of
+from trbdyn.model.motion import History, check_size, value_at, values_of
 
 MAX_SPEED_RPM: Final = 1e6
 
@@ -38,7 +37,5 @@ class TurningRings:
 
     def check_speeds(self) -> None:
         """Refuse a speed beyond `MAX_SPEED_RPM`."""
-        for name, quantity in (("speed_rpm", self.speed_rpm), ("outer_speed_rpm", self.outer_speed_rpm)):
-            speed = max(values_of(quantity), key=abs)
-            if abs(speed) > MAX_SPEED_RPM:
-                raise InputError.of(name, speed, f"must be from {-MAX_SPEED_RPM:g} to {MAX_SPEED_RPM:g} (rpm)")
+        check_size("speed_rpm", self.speed_rpm, MAX_SPEED_RPM, "rpm")
+        check_size("outer_speed_rpm", self.outer_speed_rpm, MAX_SPEED_RPM, "rpm")

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Final
+from typing import Annotated, Any, Final
 
-from trbdyn.errors import InputError
+from pydantic import BeforeValidator
+
+from trbdyn.errors import InputError, Problem
 from trbdyn.model.lubricants.lubricant import FVA3, MINERAL, SHIPPED, Lubricant, PressureLaw
 
 
@@ -114,3 +116,16 @@ OILS: Final[dict[str, Callable[..., Lubricant]]] = {
     **{made.__name__: made for made in (vg32, vg46, vg68, vg150, vg220, vg320, vg460, gear_75w90, gear_80w90, atf)},
 }
 """Oils that ship, by name: each takes ``temperature_c`` (60 by default)."""
+
+
+def _by_name(given: Any) -> Any:
+    if not isinstance(given, str):
+        return given
+    if given.lower() not in OILS:
+        limit = f"must be one of {', '.join(OILS)}, a Lubricant, or an Oil at a temperature: oil.at(60.0)"
+        raise InputError([Problem((), given, limit)])
+    return OILS[given.lower()]()
+
+
+AnyLubricant = Annotated[Lubricant, BeforeValidator(_by_name)]
+"""A field that takes a lubricant, or the name of an oil that ships, which stands for it at 60 C."""
