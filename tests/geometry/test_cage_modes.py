@@ -253,7 +253,7 @@ def test_other_files_are_refused(modes: CageModes, tmp_path: Path) -> None:
 def test_a_model_asks_for_what_it_needs() -> None:
     with pytest.raises(trb.InputError, match=r"cage\.body = None : must be given"):
         cage_solid(trb.cases.rig_30310())
-    with pytest.raises(trb.InputError, match="fineness = 4 : must be 1 to 3"):
+    with pytest.raises(trb.InputError, match="fineness = 4 : must be a whole number, from 1 to 3"):
         cage_solid(BEARING, fineness=4)
     bare = BEARING.replace({"cage.material": trb.Material(youngs_modulus=1e11, poisson_ratio=0.3, density=8000.0)})
     with pytest.raises(trb.InputError, match="damping_ratio = None"):

@@ -12,7 +12,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from trbdyn.base.validation import as_whole_number
+from trbdyn.base.validation import whole_number_of
 from trbdyn.cage.sections import bar_sections, forces_on, nominal_stress, rim_sections
 from trbdyn.cage.solid import Elasticity, Solid, crossed
 from trbdyn.cage.wall_mesh import wall_mesh
@@ -113,12 +113,7 @@ def cage_solid(bearing: Bearing, *, fineness: int = 1, cracked_bars: Iterable[in
     """
     from scipy.sparse import vstack
 
-    try:
-        parts = as_whole_number(fineness)
-    except ValueError as error:
-        raise InputError.of("fineness", fineness, str(error)) from None
-    if not 1 <= parts <= 3:
-        raise InputError.of("fineness", fineness, "must be 1 to 3")
+    parts = whole_number_of("fineness", fineness, 1, 3)
     body = bearing.cage.body
     if body is None:
         limit = "must be given: a finite-element model needs rims and bars (trb.CageBody)"

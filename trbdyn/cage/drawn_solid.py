@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -18,7 +19,7 @@ from trbdyn.cage.solid import EDGES, FloatArray, IntArray, Solid
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.cage_drawing import CageDrawing
-from trbdyn.model.drawn.opened import MM, STEP_ENDINGS, gmsh_model
+from trbdyn.model.drawn.opened import MM, STEP_ENDINGS, gmsh_model, nodes_of
 from trbdyn.model.pocket import every_surface
 
 COARSEST: Final = 0.24
@@ -74,10 +75,8 @@ def drawn_solid(bearing: Bearing, *, fineness: float = 1.0) -> CageSolid:
         directions=np.zeros((0, 3)),
     )
     names, vertices, directions = _corners(bearing, built)
-    return CageSolid(
-        solid=solid,
-        faces=faces,
-        at_faces=built.at_faces,
+    return replace(
+        built,
         corners=names,
         corner_places=solid.nodes[vertices],
         stress_of=stress_rows(solid, vertices, directions),
@@ -100,7 +99,7 @@ def tetrahedra(drawing: CageDrawing, size: float, fineness: float) -> tuple[Floa
             gmsh.model.mesh.setOrder(2)
         except Exception as error:  # Gmsh raises Exception itself
             raise FileError(f"{drawing.file}: cannot be meshed: {error}") from None
-        numbers, places, _ = gmsh.model.mesh.getNodes()
+        places = nodes_of(gmsh)
         found = gmsh.model.mesh.getElementsByType(TEN_NODES)[1].astype(np.int64).reshape(-1, 10)
     if not len(found):
         raise FileError(f"{drawing.file}: cannot be meshed: no tetrahedra were made")
@@ -108,10 +107,8 @@ def tetrahedra(drawing: CageDrawing, size: float, fineness: float) -> tuple[Floa
     if len(used) > MOST_NODES:
         limit = f"must be less: the mesh of {drawing.file} has {len(used)} nodes, {MOST_NODES} are allowed"
         raise InputError.of(("elastic_cage", "fineness"), fineness, limit)
-    order = np.argsort(numbers)
-    nodes = places.reshape(-1, 3)[order[np.searchsorted(numbers[order], used)]]
     elements = elements.reshape(-1, 10)
-    nodes = (MM * nodes - np.array(drawing.origin)) @ np.array(drawing.axes).T
+    nodes = (places[used] - np.array(drawing.origin)) @ np.array(drawing.axes).T
     return straightened(nodes, elements), elements
 
 

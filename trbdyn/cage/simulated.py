@@ -51,29 +51,20 @@ def _modes(bearing: Bearing, elastic: ElasticCage) -> CageModes:
             path = ("elastic_cage", "file_sha256")
             raise InputError.of(path, elastic.file_sha256, f"must be that of {elastic.file}, which has changed since")
         found = CageModes.load(elastic.file)
-        ratio = found.damping_ratio
     else:
         built, frequency, shapes = _natural(bearing, elastic)
         given = bearing.cage_material.damping_ratio if elastic.damping_ratio is None else elastic.damping_ratio
         assert given is not None  # the scene has checked it
-        source = f"finite elements, cage of {bearing.name}"
-        found = CageModes.of_shapes(built, frequency, shapes, given, source)
-        ratio = found.damping_ratio
+        found = CageModes.of_shapes(built, frequency, shapes, given, f"finite elements, cage of {bearing.name}")
     if elastic.n_modes > len(found.frequency):
         limit = f"must be <= {len(found.frequency)}: {elastic.file} has no more modes"
         raise InputError.of(("elastic_cage", "n_modes"), elastic.n_modes, limit)
+    each = {name: getattr(found, name)[: elastic.n_modes] for name in ("frequency", "modal_mass", "shape", "stress")}
+    ratio = found.damping_ratio[: elastic.n_modes]
     if elastic.damping_ratio is not None:
-        ratio = np.full(len(found.frequency), elastic.damping_ratio)
-    count = elastic.n_modes
-    return replace(
-        found,
-        frequency=found.frequency[:count],
-        damping_ratio=ratio[:count],
-        modal_mass=found.modal_mass[:count],
-        shape=found.shape[:count],
-        stress=found.stress[:count],
-        coriolis=None if found.coriolis is None else found.coriolis[:count, :count],
-    )
+        ratio = np.full(elastic.n_modes, elastic.damping_ratio)
+    coriolis = np.asarray(found.coriolis)[: elastic.n_modes, : elastic.n_modes]
+    return replace(found, **each, damping_ratio=ratio, coriolis=coriolis)
 
 
 def _natural(bearing: Bearing, elastic: ElasticCage) -> tuple[CageSolid, FloatArray, FloatArray]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from typing import Annotated, Any, Final, Literal, Self
 
@@ -39,8 +39,8 @@ ROWS: Final[dict[str, tuple[Literal["left", "right"], ...]]] = {
 }
 """Where the small ends of the rows point, from left to right. TDO: one double outer ring and two inner rings; TDI: one double
 inner ring and two outer rings; TQO and TQI: four rows, two TDI or two TDO."""
-OWN_FIELDS: Final = ("outer_speed_rpm", "torque", "gravity", "shared_housing")
-"""Fields of an `Assembly` beside those that its makers name."""
+OWN_FIELDS: Final = ("shaft", "loads", "speed_rpm", "outer_speed_rpm", "torque", "gravity", "shared_housing")
+"""Fields of an `Assembly` that its makers take, beside those of its bearings."""
 
 
 class Assembly(TurningRings, Model):
@@ -134,16 +134,12 @@ class Assembly(TurningRings, Model):
         if arrangement not in ("back to back", "face to face"):
             raise InputError.of("arrangement", arrangement, "must be 'back to back' or 'face to face'")
         ends = ("right", "left") if arrangement == "back to back" else ("left", "right")
-        own = {name: fields.pop(name) for name in OWN_FIELDS if name in fields}
-        bearings = tuple(
-            ShaftBearing(
-                one, name=name, position=sign * 0.5 * spread, small_ends=small, end_play=0.5 * end_play, **fields
-            )
-            for one, name, sign, small in zip(
-                (bearing, other or bearing), ("left", "right"), (-1.0, 1.0), ends, strict=True
-            )
+        placed = (
+            {"bearing": bearing, "name": "left", "position": -0.5 * spread, "small_ends": ends[0]},
+            {"bearing": other or bearing, "name": "right", "position": 0.5 * spread, "small_ends": ends[1]},
         )
-        return cls(shaft=shaft, bearings=bearings, loads=tuple(loads), speed_rpm=speed_rpm, **own)
+        fields |= {"end_play": 0.5 * end_play, "loads": tuple(loads), "shaft": shaft, "speed_rpm": speed_rpm}
+        return cls._of(placed, fields)
 
     @classmethod
     def rows(
@@ -206,19 +202,19 @@ class Assembly(TurningRings, Model):
                 "row_distance", len(gaps), f"must be one number, or {len(ends) - 1} for {len(ends)} rows"
             )
         planes = [sum(gaps[:index]) - 0.5 * sum(gaps) for index in range(len(ends))]
-        own = {name: fields.pop(name) for name in OWN_FIELDS if name in fields}
-        bearings = tuple(
-            ShaftBearing(
-                bearing,
-                name=f"row_{index + 1}",
-                position=plane - (load_centre_offset(bearing) if end == "right" else -load_centre_offset(bearing)),
-                small_ends=end,
-                end_play=0.5 * end_play,
-                **fields,
-            )
-            for index, (end, plane) in enumerate(zip(ends, planes, strict=True))
+        offset = load_centre_offset(bearing)
+        placed = (
+            {"name": f"row_{k + 1}", "position": plane - (offset if end == "right" else -offset), "small_ends": end}
+            for k, (end, plane) in enumerate(zip(ends, planes, strict=True))
         )
-        return cls(shaft=shaft, bearings=bearings, loads=tuple(loads), speed_rpm=speed_rpm, **own)
+        fields |= {"end_play": 0.5 * end_play, "loads": tuple(loads), "shaft": shaft, "speed_rpm": speed_rpm}
+        return cls._of(placed, {"bearing": bearing, **fields})
+
+    @classmethod
+    def _of(cls, placed: Iterable[dict[str, Any]], fields: dict[str, Any]) -> Self:
+        """An assembly of bearings with fields of their own; the other ones are those of the assembly, or of all bearings."""
+        own = {name: fields.pop(name) for name in OWN_FIELDS if name in fields}
+        return cls(bearings=tuple(ShaftBearing(**{**fields, **one}) for one in placed), **own)
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -16,7 +16,7 @@ from collections.abc import Mapping
 from difflib import get_close_matches
 from typing import Any, Final
 
-from trbdyn.base.validation import as_whole_number, number_of
+from trbdyn.base.validation import number_of, whole_number_of
 from trbdyn.errors import MISSING, InputError, Problem
 from trbdyn.model.assumed import ISO_LENGTH, ISO_LONG, ISO_SHORT, scaled
 from trbdyn.model.catalogue_cylinders import check_kind, usual_clearance, with_raceways
@@ -106,7 +106,8 @@ def fields_from_catalogue(numbers: Mapping[str, Any]) -> dict[str, Any]:
     if C0 is not None:
         _check_share("Cu", get("Cu"), "C0", C0, FATIGUE_SHARE)
     if "n_rollers" in given:
-        _count(given["n_rollers"])
+        allowed = PARAMETERS["n_rollers"]
+        whole_number_of("n_rollers", given["n_rollers"], int(allowed.lower), int(allowed.upper))
     if not MAKER.low <= get("maker_factor", 1.0) <= MAKER.high:
         limit = f"must be from {MAKER.low:g} to {MAKER.high:g} (1)"
         raise InputError.of("maker_factor", given["maker_factor"], limit)
@@ -177,16 +178,6 @@ def _positive(key: str, value: object) -> None:
         raise InputError([Problem((key,), MISSING, f"must be given ({unit})")])
     if not number_of(key, value, unit, gt=0.0) < math.inf:
         raise InputError.of(key, value, f"must be a finite number ({unit})")
-
-
-def _count(value: object) -> None:
-    try:
-        number = as_whole_number(value)
-    except ValueError as error:
-        raise InputError.of("n_rollers", value, f"{error} (1)") from None
-    allowed = PARAMETERS["n_rollers"]
-    if not allowed.lower <= number <= allowed.upper:
-        raise InputError.of("n_rollers", value, f"must be from {allowed.lower:g} to {allowed.upper:g} (1)")
 
 
 def _check_dimensions(bore: float, outside: float, width: float) -> None:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from trbdyn.errors import FileError
 from trbdyn.model.drawn.opened import Drawing, DrawnFace, Surfaces
+from trbdyn.model.drawn.stl import doubled
 from trbdyn.model.pocket import MAX_VERTICES
 
 FloatArray = NDArray[np.float64]
@@ -74,8 +75,8 @@ def _of_triangles(face: DrawnFace, near: Near) -> list[Facet]:
 
 def plane_of(triangles: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Normal, a point, and two axes (rows) of the plane of triangles."""
-    doubled = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]).sum(axis=0)
-    normal = doubled / np.linalg.norm(doubled)
+    whole = doubled(triangles).sum(axis=0)
+    normal = whole / np.linalg.norm(whole)
     points = triangles.reshape(-1, 3)
     origin = points.mean(axis=0)
     first = points[int(np.argmax(np.linalg.norm(points - origin, axis=1)))] - origin

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from trbdyn.base.own_files import file_path
 from trbdyn.errors import FileError, InputError
-from trbdyn.model.drawn.stl import faces_of, read_triangles, solid_of
+from trbdyn.model.drawn.stl import doubled, faces_of, read_triangles, solid_of
 
 FloatArray = NDArray[np.float64]
 
@@ -210,15 +210,8 @@ def _step(gmsh: Any, path: str, mesh_size: float) -> Drawing:
         for tag in tags
     ]
     surfaces = Surfaces(gmsh)
-    _connect(faces, surfaces)
-    return Drawing(
-        path=path,
-        faces=faces,
-        volume=volume,
-        centre=centre,
-        inertia=inertia,
-        surfaces=surfaces,
-    )
+    _connect(faces, _edges(faces, surfaces))
+    return Drawing(path, faces, volume, centre, inertia, surfaces)
 
 
 def _stl(path: Path, scale: float) -> Drawing:
@@ -231,20 +224,18 @@ def _stl(path: Path, scale: float) -> Drawing:
     faces = []
     for number, (own, is_plane) in enumerate(zip(members, planes, strict=True), 1):
         owner[own] = number
-        doubled = np.cross(triangles[own, 1] - triangles[own, 0], triangles[own, 2] - triangles[own, 0])
-        areas = 0.5 * np.linalg.norm(doubled, axis=1)
+        areas = 0.5 * np.linalg.norm(doubled(triangles[own]), axis=1)
         middle = np.average(triangles[own].mean(axis=1), axis=0, weights=areas)
         faces.append(
             DrawnFace(number, "Plane" if is_plane else "Triangles", float(areas.sum()), middle, triangles[own])
         )
-    shared: dict[int, list[tuple[int, FloatArray]]] = {face.number: [] for face in faces}
-    for one, other, start, end in edges:
-        if owner[one] != owner[other]:
-            middle = 0.5 * (corners[start] + corners[end])
-            shared[owner[one]].append((int(owner[other]), middle))
-            shared[owner[other]].append((int(owner[one]), middle))
-    for face in faces:
-        face.neighbours = tuple(shared[face.number])
+    _connect(
+        faces,
+        (
+            ({int(owner[one]), int(owner[other])}, 0.5 * (corners[start] + corners[end]))
+            for one, other, start, end in edges
+        ),
+    )
     return Drawing(str(path), faces, volume, centre, inertia)
 
 
@@ -256,17 +247,21 @@ def _rough(gmsh: Any, path: str, tags: list[int], mesh_size: float) -> dict[int,
         gmsh.model.mesh.generate(2)
     except Exception as error:
         raise FileError(f"{path}: its faces cannot be covered by triangles: {error}") from None
-    numbers, places, _ = gmsh.model.mesh.getNodes()
-    row = np.zeros(int(numbers.max()) + 1, dtype=int)
-    row[numbers.astype(int)] = np.arange(len(numbers))
-    points = MM * places.reshape(-1, 3)
-    found = {}
+    points, found = nodes_of(gmsh), {}
     for tag in tags:
         corners = gmsh.model.mesh.getElementsByType(2, tag)[1]
         if not len(corners):
             raise FileError(f"{path}: face {tag} cannot be covered by triangles")
-        found[tag] = points[row[corners.astype(int)].reshape(-1, 3)]
+        found[tag] = points[corners.astype(int).reshape(-1, 3)]
     return found
+
+
+def nodes_of(gmsh: Any) -> FloatArray:
+    """Places of the nodes of a mesh (m), each in the row of its number."""
+    numbers, places, _ = gmsh.model.mesh.getNodes()
+    points = np.zeros((int(numbers.max()) + 1, 3))
+    points[numbers.astype(int)] = MM * places.reshape(-1, 3)
+    return points
 
 
 def _solid(gmsh: Any, path: str, count: int) -> tuple[float, FloatArray, FloatArray]:
@@ -277,11 +272,8 @@ def _solid(gmsh: Any, path: str, count: int) -> tuple[float, FloatArray, FloatAr
     Open CASCADE's own moments change by some per cent when the same solid is turned.
     """
     gmsh.model.mesh.setOrder(2)
-    numbers, places, _ = gmsh.model.mesh.getNodes()
-    row = np.zeros(int(numbers.max()) + 1, dtype=int)
-    row[numbers.astype(int)] = np.arange(len(numbers))
     nodes = gmsh.model.mesh.getElementsByType(SIX_NODES)[1].astype(int).reshape(-1, 6)
-    points = MM * places.reshape(-1, 3)[row[nodes]]
+    points = nodes_of(gmsh)[nodes]
     origin = points.mean(axis=(0, 1))
     points = points - origin
     line, weights = np.polynomial.legendre.leggauss(5)
@@ -310,18 +302,23 @@ def _solid(gmsh: Any, path: str, count: int) -> tuple[float, FloatArray, FloatAr
     return volume, origin + centre, np.trace(second) * np.eye(3) - second
 
 
-def _connect(faces: list[DrawnFace], surfaces: Surfaces) -> None:
-    """Find which faces share an edge."""
+def _connect(faces: list[DrawnFace], edges: Iterable[tuple[set[int], FloatArray]]) -> None:
+    """Tell faces which others share an edge with them, by the numbers of an edge's faces and its middle."""
+    shared: dict[int, list[tuple[int, FloatArray]]] = {face.number: [] for face in faces}
+    for owners, middle in edges:
+        for one in owners:
+            shared[one] += [(other, middle) for other in owners if other != one]
+    for face in faces:
+        face.neighbours = tuple(shared[face.number])
+
+
+def _edges(faces: list[DrawnFace], surfaces: Surfaces) -> Iterator[tuple[set[int], FloatArray]]:
+    """Numbers of the faces that share each curve, and its middle."""
     of_curve: dict[int, set[int]] = {}
     for face in faces:
         for loop in surfaces.loops(face.number):
             for curve in loop:
                 of_curve.setdefault(curve, set()).add(face.number)
-    shared: dict[int, list[tuple[int, FloatArray]]] = {face.number: [] for face in faces}
     for curve, owners in of_curve.items():
         (low,), (high,) = surfaces.gmsh.model.getParametrizationBounds(1, curve)
-        middle = surfaces.along(curve, np.array([0.5 * (low + high)]))[0]
-        for one in owners:
-            shared[one] += [(other, middle) for other in owners if other != one]
-    for face in faces:
-        face.neighbours = tuple(shared[face.number])
+        yield owners, surfaces.along(curve, np.array([0.5 * (low + high)]))[0]

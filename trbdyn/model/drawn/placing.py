@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from trbdyn.errors import FileError
 from trbdyn.model.drawn.opened import Drawing, DrawnFace
+from trbdyn.model.drawn.stl import doubled
 
 FloatArray = NDArray[np.float64]
 
@@ -92,8 +93,7 @@ def _revolved(
         if np.any(np.abs(wrong) > share * radius):
             continue
         turned = np.arctan2(*(arms @ _across(direction).T).T[::-1])
-        wide = _span(turned)
-        if wide < 0.5 * math.pi:
+        if span(turned) < 0.5 * math.pi:
             continue
         if face.is_plane:
             for across in _across(direction):
@@ -109,7 +109,7 @@ def _revolved(
     return np.array(rows).reshape(-1, 6), np.array(off)
 
 
-def _span(angles: FloatArray) -> float:
+def span(angles: FloatArray) -> float:
     """Range that angles cover: the circle less its widest gap (rad)."""
     ordered = np.sort(np.mod(angles, 2.0 * math.pi))
     return float(2.0 * math.pi - np.max(np.diff(np.concatenate([ordered, ordered[:1] + 2.0 * math.pi]))))
@@ -119,8 +119,8 @@ def _samples(drawing: Drawing, face: DrawnFace) -> tuple[FloatArray, FloatArray]
     """Points of a face and the normals there; exact where it can be evaluated."""
     if drawing.surfaces is None:
         corners = face.triangles
-        doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        return corners.mean(axis=1), doubled / np.linalg.norm(doubled, axis=1)[:, None]
+        normals = doubled(corners)
+        return corners.mean(axis=1), normals / np.linalg.norm(normals, axis=1)[:, None]
     low, high = (np.array(end) for end in drawing.surfaces.gmsh.model.getParametrizationBounds(2, face.number))
     shares = np.stack(
         np.meshgrid(np.linspace(0.02, 0.98, 9), np.linspace(0.1, 0.9, 3), indexing="ij"), axis=-1

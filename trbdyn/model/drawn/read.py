@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.drawn.cage import DrawnCage
 from trbdyn.model.drawn.opened import Drawing, DrawnFace, opened
-from trbdyn.model.drawn.placing import Frustum, Place, axis_of, place_of, pockets_of
+from trbdyn.model.drawn.placing import Frustum, Place, axis_of, place_of, pockets_of, span
 from trbdyn.model.drawn.roller import REACHES
+from trbdyn.model.drawn.stl import doubled
 from trbdyn.model.drawn.surfaces import NAMES, Surfaces
 from trbdyn.model.pocket import Face, Pocket
 
@@ -185,17 +186,14 @@ class _Reader:
             centre = rows @ (face.centre - origin)
             if self._is_whole_ring(face, place):
                 continue
-            doubled = np.cross(
-                face.triangles[:, 1] - face.triangles[:, 0], face.triangles[:, 2] - face.triangles[:, 0]
-            ).sum(axis=0)
-            normal = rows @ doubled / max(float(np.linalg.norm(doubled)), 1e-30) if face.is_plane else np.zeros(3)
+            whole = doubled(face.triangles).sum(axis=0)
+            normal = rows @ whole / max(float(np.linalg.norm(whole)), 1e-30) if face.is_plane else np.zeros(3)
             marks.append(np.concatenate([centre, [face.area], normal]))
         return marks
 
     def _is_whole_ring(self, face: DrawnFace, place: Place) -> bool:
         own = place.inside(face.triangles.mean(axis=1))
-        angles = np.sort(np.arctan2(own[:, 1], own[:, 0]))
-        return bool(np.max(np.diff(np.concatenate([angles, angles[:1] + 2.0 * math.pi]))) < 0.5 * math.pi)
+        return span(np.arctan2(own[:, 1], own[:, 0])) > 1.5 * math.pi
 
     # the whole
 

@@ -20,6 +20,11 @@ LARGE: Final = 1e-5
 """Least area of a plane face over the square of the solid's size."""
 
 
+def doubled(triangles: FloatArray) -> FloatArray:
+    """Normals of triangles, shape (T, 3), as long as twice their areas."""
+    return np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+
+
 def read_triangles(path: Path, scale: float) -> FloatArray:
     """Triangles of an STL file, shape (T, 3, 3), times a scale."""
     data = path.read_bytes()
@@ -64,9 +69,9 @@ def faces_of(path: Path, triangles: FloatArray) -> tuple[list[NDArray[np.intp]],
         raise FileError(
             f"{path}: its triangles are not the closed surface of a solid: {len(of_edge)} edges have one triangle alone"
         )
-    doubled = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-    areas = 0.5 * np.linalg.norm(doubled, axis=1)
-    normals = doubled / np.maximum(2.0 * areas, 1e-300)[:, None]
+    normals = doubled(triangles)
+    areas = 0.5 * np.linalg.norm(normals, axis=1)
+    normals /= np.maximum(2.0 * areas, 1e-300)[:, None]
     flat = _groups(len(rows), [(one, other) for one, other, *_ in edges if normals[one] @ normals[other] > FLAT])
     of_flat = np.bincount(flat, weights=areas)
     is_large = of_flat[flat] > LARGE * size**2
