@@ -173,6 +173,10 @@ def cage_inertias(mass: float, pitch: float, across: float, along: float) -> dic
     return {"inertia_axial": axial, "inertia_transverse": 0.5 * axial + along_axis * (heavier * along**2)}
 
 
+_SCALED: Final = {name: tuple(numbers) for name, numbers in scaled({**RIG, "cup_half_angle_deg": 12.95}).items()}
+"""Names of those numbers, by section."""
+
+
 def with_assumed(values: Mapping[str, Any], kinds: Mapping[str, type[Model]]) -> Values:
     """Fields of a bearing, its sections made whole with assumed numbers; `kinds` has the model of each section by its path.
 
@@ -274,18 +278,9 @@ def _density(material: object) -> object:
 
 def assumed_inputs(bearing: Bearing) -> dict[str, float]:
     """Inputs that were not given: value by path."""
-    names: dict[str, list[str]] = {section: list(numbers) for section, numbers in _CONSTANT.items()}
-    for section, numbers in scaled(
-        {
-            "diameter": bearing.roller.diameter,
-            "effective_length": bearing.roller.effective_length,
-            "pitch_diameter": bearing.pitch_diameter,
-            "cup_half_angle_deg": bearing.cup_half_angle_deg,
-        }
-    ).items():
-        names[section] = [*numbers, *names.get(section, [])]
+    names = {section: (*_SCALED.get(section, ()), *_CONSTANT.get(section, ())) for section in {**_CONSTANT, **_SCALED}}
     for raceway in RACEWAY_PROFILES:
-        names[raceway] = names["roller.profile"] if getattr(bearing, raceway) is not None else []
+        names[raceway] = names["roller.profile"] if getattr(bearing, raceway) is not None else ()
     found: dict[str, float] = {}
     for section, fields in names.items():
         part: Any = bearing

@@ -326,33 +326,25 @@ def _fields(
     origin = "30310 test bearing (Sakaguchi and Harada 2006), scaled with"
     across = f"{origin} the roller's diameter"
     inertias = f"{origin} mass and radius squared, the part along the axis with length squared"
-    rows: list[tuple[str, float, float, float, str, str]] = [
-        ("roller.total_length", total, 1.0, 1.05, "m", across),
-        ("ribs.contact_height", ribs["contact_height"], 0.7, 1.3, "m", across),
-        *((f"cage.{name}", cage[name], 0.5, 2.0, "m", across) for name in plays),
-        ("cage.inertia_axial", inner["inertia_axial"], 0.75, 1.07, "kg m2", inertias),
-        ("cage.inertia_transverse", inner["inertia_transverse"], 0.95, 1.35, "kg m2", inertias),
-    ]
+
+    def share(path: str, value: float, low: float, high: float, unit: str, source: str) -> None:
+        """List an estimate; its band is over its value."""
+        estimates.append(Estimated.of(path, value, low * value, high * value, unit, source))
+
+    share("roller.total_length", total, 1.0, 1.05, "m", across)
+    share("ribs.contact_height", ribs["contact_height"], 0.7, 1.3, "m", across)
+    for name in plays:
+        share(f"cage.{name}", cage[name], 0.5, 2.0, "m", across)
+    share("cage.inertia_axial", inner["inertia_axial"], 0.75, 1.07, "kg m2", inertias)
+    share("cage.inertia_transverse", inner["inertia_transverse"], 0.95, 1.35, "kg m2", inertias)
     if cylinder is not None:
-        rows.append(("ribs.clearance", ribs["clearance"], 0.3, 3.0, "m", "1.5e-3 of the roller's diameter, assumed"))
+        share("ribs.clearance", ribs["clearance"], 0.3, 3.0, "m", "1.5e-3 of the roller's diameter, assumed")
     if cage_mass is None:
-        rows.append(
-            (
-                "cage.mass",
-                inner["mass"],
-                0.4,
-                1.6,
-                "kg",
-                f"{origin} pitch diameter, roller diameter and roller length; of steel",
-            )
-        )
-    listed = [
-        Estimated.of(path, value, low * value, high * value, unit, source)
-        for path, value, low, high, unit, source in rows
-    ]
+        of_mass = f"{origin} pitch diameter, roller diameter and roller length; of steel"
+        share("cage.mass", inner["mass"], 0.4, 1.6, "kg", of_mass)
     amplitude = ISO_SHORT if found.length <= ISO_LENGTH * found.diameter else ISO_LONG
     source = "profile of ISO/TS 16281; band from straight (0) to the larger of its constants, which a 32216 was measured with"
-    listed.append(Estimated.of("roller.profile.a_p", amplitude, 0.0, ISO_LONG, "1", source))
+    estimates.append(Estimated.of("roller.profile.a_p", amplitude, 0.0, ISO_LONG, "1", source))
     fields = {
         "n_rollers": found.count,
         "cup_half_angle_deg": found.angle,
@@ -360,7 +352,7 @@ def _fields(
         "roller": roller,
         "ribs": ribs,
         "cage": cage,
-        "estimates": tuple(estimates + listed),
+        "estimates": tuple(estimates),
     }
     if cylinder is not None:
         ribs["flanges"] = cylinder["flanges"]

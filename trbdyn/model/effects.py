@@ -241,19 +241,12 @@ class Effects(Model):
         # a table out of a file has the coefficients of every law; one of an earlier version lacks the newest fields
         if len(values) < 0.5 * len(cls.model_fields):
             refuse_idle(values.get("damping", "film"), values.get("lubrication", "mixed"), values)
-        fill = values.get("oil_fill")
-        if isinstance(fill, str):
-            if fill not in OIL_SUPPLIES:
-                raise InputError.of(
-                    "oil_fill", fill, f"must be from 0 to 1, or a name: {unknown_name(fill, OIL_SUPPLIES)}"
-                )
-            values = {**values, "oil_fill": OIL_SUPPLIES[fill].fill}
-        state = values.get("replenishment")
-        if isinstance(state, str):
-            if state not in REPLENISHMENT:
-                allowed = f"must be from 0 to 1e-6, or a name: {unknown_name(state, REPLENISHMENT)}"
-                raise InputError.of("replenishment", state, allowed)
-            values = {**values, "replenishment": REPLENISHMENT[state].value}
+        for name, states, most in (("oil_fill", OIL_SUPPLIES, "1"), ("replenishment", REPLENISHMENT, "1e-6")):
+            if isinstance(state := values.get(name), str):
+                if state not in states:
+                    limit = f"must be from 0 to {most}, or a name: {unknown_name(state, states)}"
+                    raise InputError.of(name, state, limit)
+                values = {**values, name: states[state][0]}
         return values
 
     def _check(self) -> None:

@@ -16,6 +16,7 @@ from typing import Annotated, Any, Self
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
+from pydantic import PlainSerializer, PlainValidator
 
 from trbdyn.base.validation import Flag, Model, Number, as_number, number_of, unit
 from trbdyn.errors import InputError, Path
@@ -328,40 +329,25 @@ def _listed(name: str, values: object) -> tuple[Any, ...]:
 
 
 def _as_quantity(value: object) -> float | History:
+    """A number or a History, without trying one after the other, so that messages stay short."""
     if isinstance(value, History):
         return value
     if isinstance(value, Mapping):
         return History(**{str(key): entry for key, entry in value.items()})
     try:
-        return as_number(value)
+        number = as_number(value)
     except ValueError:
         raise ValueError("must be a number or a History of times and values") from None
-
-
-def _finite(value: float | History) -> float | History:
-    if isinstance(value, float) and not np.isfinite(value):
+    if not math.isfinite(number):
         raise ValueError("must be a finite number")
-    return value
+    return number
 
 
-class _QuantitySchema:
-    """Tells pydantic to take a number or a History without trying one after the other, so that messages stay short."""
-
-    @classmethod
-    def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> Any:
-        from pydantic_core import core_schema
-
-        return core_schema.no_info_plain_validator_function(
-            lambda value: _finite(_as_quantity(value)),
-            serialization=core_schema.plain_serializer_function_ser_schema(_plain, when_used="always"),
-        )
-
-
-def _plain(value: float | History) -> object:
+def _plain(value: float | History) -> Any:
     return value.to_dict() if isinstance(value, History) else value
 
 
-Quantity = Annotated[float | History, _QuantitySchema]
+Quantity = Annotated[float | History, PlainValidator(_as_quantity), PlainSerializer(_plain)]
 
 
 def value_at(quantity: float | History, time: float) -> float:
