@@ -54,11 +54,6 @@ class Shaft(OnAxis):
     damping_turns : float
         The same of turns about transverse axes (N m s).
 
-    Raises
-    ------
-    InputError
-        If no body can have these moments of inertia: the axial one is at most twice the transverse one.
-
     Examples
     --------
     >>> import trbdyn as trb
@@ -96,11 +91,6 @@ class SharedHousing(OnAxis):
     support_position : float
         Position of the support along the shaft (m). Several supports on the axis, k_i at the places z_i, are one: the sum of k_i
         at z = sum(k_i z_i)/sum(k_i), with sum(k_i (z_i - z)^2) in addition against tilt (`on_supports`).
-
-    Raises
-    ------
-    InputError
-        If no body can have these moments of inertia: the axial one is at most twice the transverse one.
 
     Examples
     --------

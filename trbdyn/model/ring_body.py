@@ -15,7 +15,13 @@ if TYPE_CHECKING:
 
 
 class Revolved(Model):
-    """A rigid body of revolution: what everything that moves with a shaft or a housing has in common."""
+    """A rigid body of revolution: what everything that moves with a shaft or a housing has in common.
+
+    Raises
+    ------
+    InputError
+        If no body can have these moments of inertia: the axial one is at most twice the transverse one.
+    """
 
     mass: Annotated[Number, parameter("ring_mass", gt=0.0)]
     inertia_axial: Annotated[Number, parameter("ring_inertia_axial", gt=0.0)]
@@ -105,11 +111,6 @@ class RingBody(MovingBody):
     support_position : float
         Axial position of the support from the roller-centre plane, positive towards the large ends (m).
 
-    Raises
-    ------
-    InputError
-        If no body can have these moments of inertia: the axial one is at most twice the transverse one.
-
     Examples
     --------
     >>> import trbdyn as trb
@@ -149,11 +150,6 @@ class Housing(MovingBody):
         Its stiffness against tilt (N m/rad).
     support_position : float
         Axial position of the support from the roller-centre plane, positive towards the large ends (m).
-
-    Raises
-    ------
-    InputError
-        If no body can have these moments of inertia: the axial one is at most twice the transverse one.
 
     Examples
     --------
