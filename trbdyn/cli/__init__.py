@@ -10,24 +10,33 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
+from typing import Final
 
 from trbdyn.base.version import __version__
-from trbdyn.cli.app import add_app_parser
-from trbdyn.cli.cases import add_case_parsers
-from trbdyn.cli.demo import add_demo_parser
-from trbdyn.cli.ensemble import add_ensemble_parser
-from trbdyn.cli.look import add_look_parsers
+from trbdyn.cli import app, cases, demo, ensemble, look, plan, rating, report, run, sweep, thermal, torque, view
 from trbdyn.cli.outcome import BAD_INPUT, DONE, FAILED, FAULT, INTERRUPTED, Parser, let_any_name_be_printed, run_command
-from trbdyn.cli.plan import add_plan_parser
-from trbdyn.cli.rating import add_rating_parser
-from trbdyn.cli.report import add_report_parser
-from trbdyn.cli.run import add_run_parsers
-from trbdyn.cli.sweep import add_sweep_parser
-from trbdyn.cli.thermal import add_thermal_parser
-from trbdyn.cli.torque import add_torque_parser
-from trbdyn.cli.view import add_view_parser
 
 __all__ = ["BAD_INPUT", "DONE", "FAILED", "FAULT", "INTERRUPTED", "main", "make_parser"]
+
+COMMANDS: Final = (
+    run.run,
+    run.resume,
+    look.plot,
+    look.info,
+    demo.demo,
+    report.report,
+    view.view,
+    sweep.sweep,
+    ensemble.ensemble,
+    plan.plan,
+    rating.rating,
+    torque.torque,
+    thermal.thermal,
+    app.app,
+    cases.cases,
+    cases.new,
+)
+"""In the order in which they are listed."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -43,23 +52,7 @@ def make_parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"trbdyn {__version__}")
     debug = Parser(add_help=False)
     debug.add_argument("--debug", action="store_true", help="show where an error arose")
-    turns = Parser(add_help=False)
-    turns.add_argument("--revolutions", type=float, metavar="N", help="turns of the shaft")
-    turns.add_argument("--accuracy", choices=("fast", "standard", "reference"), help="preset of the tolerances")
-    turns.add_argument("--quiet", action="store_true", help="no progress bar, no summary")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    common, length = [debug], [turns]
-    add_run_parsers(commands, common, length)
-    add_look_parsers(commands, common)
-    add_demo_parser(commands, common, length)
-    add_report_parser(commands, common)
-    add_view_parser(commands, common)
-    add_sweep_parser(commands, common)
-    add_ensemble_parser(commands, common)
-    add_plan_parser(commands, common)
-    add_rating_parser(commands, common)
-    add_torque_parser(commands, common)
-    add_thermal_parser(commands, common)
-    add_app_parser(commands, common)
-    add_case_parsers(commands, common)
+    for one in COMMANDS:
+        one.add_to(commands, debug)
     return parser

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import argparse
+import math
 import sys
 import tomllib
 import warnings
@@ -17,17 +17,6 @@ if TYPE_CHECKING:
     from trbdyn.model.assembly import Assembly
     from trbdyn.model.scene import Scene
     from trbdyn.run.options import RunOptions
-
-
-def add_set(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        dest="changes",
-        metavar="KEY=VALUE",
-        help="change a value of the case, for instance scene.speed_rpm=1000 (may be given several times)",
-    )
 
 
 def subject_with_changes(name: str, changes: Sequence[str]) -> tuple[Scene | Assembly, RunOptions]:
@@ -80,6 +69,23 @@ def _toml_value(text: str) -> Any:
         return text.strip()
     except (ValueError, RecursionError):
         raise InputError.of("--set", text, "must be a TOML value that is not that long or deep") from None
+
+
+def named_numbers(option: str, texts: Sequence[str], form: str, example: str) -> dict[str, float]:
+    """Numbers by their names, of texts ``NAME=NUMBER`` that were given for an option; each name once."""
+    found: dict[str, float] = {}
+    for text in texts:
+        name, _, number = text.partition("=")
+        try:
+            value = float(number)
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            raise InputError.of(option, text, f"must be {form}, for instance {example}")
+        if name.strip() in found:
+            raise InputError.of(option, text, f"must not name {name.strip()} again: it was given before")
+        found[name.strip()] = value
+    return found
 
 
 def simulate(

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import argparse
 import inspect
 import math
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from trbdyn.base.own_files import output_path, write_whole
 from trbdyn.cli.called import command
 from trbdyn.cli.case import subject_with_changes
+from trbdyn.cli.declared import Options, argument, subcommand
 from trbdyn.cli.outcome import DONE, say
 from trbdyn.errors import InputError
 
@@ -26,36 +25,22 @@ PITCH_SPEED: Final = 9.0
 """Speed of an example on the pitch circle (m/s): that of the test bearing at 3000 rpm is 13, gearboxes have 5 to 15."""
 
 
-def add_case_parsers(commands: Any, common: Sequence[argparse.ArgumentParser]) -> None:
-    """Add the commands ``cases`` and ``new``."""
-    cases = commands.add_parser("cases", parents=[*common], help="list the cases that ship with the package")
-    cases.add_argument(
-        "--print", dest="name", metavar="NAME", help="print this case with every number and what it means"
-    )
-    cases.set_defaults(command=_cases)
-
-    new = commands.add_parser(
-        "new", parents=[*common], help="write a case with every number, to change for your own bearing"
-    )
-    new.add_argument("file", metavar="FILE", help="a TOML file")
-    new.add_argument("--overwrite", action="store_true", help="replace the file if it is there")
-    begin = new.add_mutually_exclusive_group()
-    begin.add_argument(
-        "--case",
-        metavar="NAME",
-        help="the case to begin with (default: rig_30310)",
-    )
-    begin.add_argument(
+@subcommand(
+    "new",
+    "write a case with every number, to change for your own bearing",
+    argument("file", "a TOML file", "FILE"),
+    argument("--overwrite", "replace the file if it is there"),
+    argument("--case", "the case to begin with (default: rig_30310)", "NAME", group="begin"),
+    argument(
         "--catalogue",
-        nargs="+",
-        metavar="NAME=VALUE",
-        help="begin with a bearing from the numbers of a catalogue page, in m and N: "
+        "begin with a bearing from the numbers of a catalogue page, in m and N: "
         "bore=0.04 outside=0.08 width=0.02475 C=74800 e=0.37 name=32208; of a cylindrical bearing with flanges=NU in place of e",
-    )
-    new.set_defaults(command=_new)
-
-
-def _new(options: argparse.Namespace) -> int:
+        "NAME=VALUE",
+        nargs="+",
+        group="begin",
+    ),
+)
+def new(options: Options) -> int:
     from trbdyn.run.case_text import case_text
 
     how: dict[str, Any] = {"overwrite": options.overwrite, "endings": (".toml",)}
@@ -66,7 +51,7 @@ def _new(options: argparse.Namespace) -> int:
     return DONE
 
 
-def _first_case(options: argparse.Namespace) -> tuple[Subject, RunOptions]:
+def _first_case(options: Options) -> tuple[Subject, RunOptions]:
     from trbdyn.model.bearing import Bearing
     from trbdyn.model.catalogue import NAMES_OF_CATALOGUES
     from trbdyn.model.scene import Scene
@@ -106,7 +91,7 @@ def _number(text: str) -> tuple[str, Any]:
     return name, int(number) if name == "n_rollers" and number.is_integer() else number
 
 
-def _title(options: argparse.Namespace) -> str:
+def _title(options: Options) -> str:
     if options.catalogue is None:
         return f"Begun from the case {options.case or SHIPPED}."
     return (
@@ -116,7 +101,12 @@ def _title(options: argparse.Namespace) -> str:
     )
 
 
-def _cases(options: argparse.Namespace) -> int:
+@subcommand(
+    "cases",
+    "list the cases that ship with the package",
+    argument("--print", "print this case with every number and what it means", "NAME", dest="name"),
+)
+def cases(options: Options) -> int:
     from trbdyn.base.shipped import ASSEMBLIES, CASES, SUBJECTS
     from trbdyn.run.case_text import case_text
 

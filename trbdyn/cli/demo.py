@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
-from collections.abc import Sequence
-from typing import Any, Final
+from typing import Final
 
 from trbdyn.base.own_files import output_path
 from trbdyn.cli.case import simulate
+from trbdyn.cli.declared import LENGTH, Options, argument, subcommand
 from trbdyn.cli.outcome import DONE, FAILED, say
 
 DEMO_PICTURES: Final = ("cage_locus", "spacing_angles", "tilt", "pocket_forces")
@@ -33,19 +32,14 @@ TURNS: Final = 1300.0
 """Turns of the shaft after which the motion is known to have settled."""
 
 
-def add_demo_parser(
-    commands: Any, common: Sequence[argparse.ArgumentParser], length: Sequence[argparse.ArgumentParser]
-) -> None:
-    """Add the command ``demo``."""
-    demo = commands.add_parser(
-        "demo", parents=[*common, *length], help="the 30310 at 3000 rpm and 4930 N, from a whirling start"
-    )
-    demo.add_argument("-o", "--output", metavar="FOLDER", default="demo", help="folder (default: demo)")
-    demo.add_argument("--overwrite", action="store_true", help="replace the files of a demo that are in the folder")
-    demo.set_defaults(command=_demo)
-
-
-def _demo(options: argparse.Namespace) -> int:
+@subcommand(
+    "demo",
+    "the 30310 at 3000 rpm and 4930 N, from a whirling start",
+    *LENGTH,
+    argument("-o --output", "folder (default: demo)", "FOLDER", default="demo"),
+    argument("--overwrite", "replace the files of a demo that are in the folder"),
+)
+def demo(options: Options) -> int:
     from trbdyn import plot
     from trbdyn.model.cases import scene_30310
     from trbdyn.model.scene import Start

@@ -2,56 +2,46 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from trbdyn.cli.called import command
-from trbdyn.cli.case import add_set, subject_with_changes
+from trbdyn.cli.case import subject_with_changes
+from trbdyn.cli.declared import CASE, SET, WORKERS, Options, argument, subcommand
 from trbdyn.cli.outcome import DONE, FAILED, INTERRUPTED, say
 from trbdyn.errors import InputError, unknown_name
 
 
-def add_ensemble_parser(commands: Any, parents: Sequence[argparse.ArgumentParser]) -> None:
-    """Add the command ``ensemble``."""
-    ensemble = commands.add_parser(
-        "ensemble",
-        parents=[*parents],
-        help="run many designs that are drawn from bands",
-        description="Run many designs of a case that are drawn from bands, and tell for each observable its spread, which inputs "
-        "decide on it, and how well designs that were not run can be predicted. The same command goes on with a run that was "
-        "stopped.",
-    )
-    ensemble.add_argument("case", metavar="CASE", help="a TOML file, or the name of a shipped case")
-    ensemble.add_argument(
+@subcommand(
+    "ensemble",
+    "run many designs that are drawn from bands",
+    CASE,
+    argument(
         "--band",
+        "an input and its ends, for instance bearing.cage.play_circumferential=6e-5:2e-4 (given several times)",
+        "PATH=LOW:HIGH",
         action="append",
         required=True,
-        metavar="PATH=LOW:HIGH",
-        help="an input and its ends, for instance bearing.cage.play_circumferential=6e-5:2e-4 (given several times)",
-    )
-    ensemble.add_argument("--designs", type=int, default=256, metavar="N", help="how many are drawn (default: 256)")
-    ensemble.add_argument("--seed", type=int, default=0, metavar="N", help="of the draws (default: 0)")
-    ensemble.add_argument(
+    ),
+    argument("--designs", "how many are drawn (default: 256)", "N", type=int, default=256),
+    argument("--seed", "of the draws (default: 0)", "N", type=int, default=0),
+    argument(
         "--predict",
+        "observables of the summary (default: torque orbit_rms_over_cpr)",
+        "NAME",
         nargs="+",
         default=["torque", "orbit_rms_over_cpr"],
-        metavar="NAME",
-        help="observables of the summary (default: torque orbit_rms_over_cpr)",
-    )
-    ensemble.add_argument("--workers", type=int, metavar="N", help="runs at a time (default, and at most: the cores)")
-    ensemble.add_argument(
-        "-o", "--output", metavar="FOLDER", help="results and observables.nc (default: CASE_ensemble)"
-    )
-    ensemble.add_argument("--quiet", action="store_true", help="no progress bar, no tables")
-    add_set(ensemble)
-    ensemble.set_defaults(command=_ensemble)
-
-
-def _ensemble(options: argparse.Namespace) -> int:
+    ),
+    WORKERS,
+    argument("-o --output", "results and observables.nc (default: CASE_ensemble)", "FOLDER"),
+    argument("--quiet", "no progress bar, no tables"),
+    SET,
+)
+def ensemble(options: Options) -> int:
+    """Run many designs of a case that are drawn from bands, and tell for each observable its spread, which inputs decide on
+    it, and how well designs that were not run can be predicted. The same command goes on with a run that was stopped.
+    """
     from trbdyn.results.quantities import QUANTITIES
     from trbdyn.study.surrogate import FEWEST_DRAWS, surrogate
     from trbdyn.study.uncertainty import Band, checked_bands, uncertainty
@@ -105,7 +95,7 @@ def _band(text: str) -> tuple[str, float, float]:
         raise InputError.of("--band", text, "must be PATH=LOW:HIGH, for instance scene.speed_rpm=1000:6000") from None
 
 
-def _again(options: argparse.Namespace) -> str:
+def _again(options: Options) -> str:
     words = ["ensemble", options.case, *(word for text in options.band for word in ("--band", text))]
     words += ["--designs", options.designs, "--seed", options.seed, "--predict", *options.predict]
     words += [word for text in options.changes for word in ("--set", text)]

@@ -2,39 +2,30 @@
 
 from __future__ import annotations
 
-import argparse
 import json
-from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trbdyn.base.own_files import file_path, output_path
-from trbdyn.cli.case import add_set, subject_with_changes
+from trbdyn.cli.case import subject_with_changes
+from trbdyn.cli.declared import FILE, SET, Options, argument, subcommand
 from trbdyn.cli.outcome import DONE, say
 
 if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
 
 
-def add_look_parsers(commands: Any, common: Sequence[argparse.ArgumentParser]) -> None:
-    """Add the commands ``plot`` and ``info``."""
-    plot = commands.add_parser("plot", parents=[*common], help="draw a result's pictures")
-    plot.add_argument("file", metavar="FILE", help="a result file")
-    plot.add_argument("-o", "--output", metavar="FOLDER", help="folder (default: FILE without its ending, + _plots)")
-    plot.add_argument("--only", nargs="+", metavar="NAME", help="draw these pictures only")
-    plot.add_argument("--animation", action="store_true", help="also write animation.gif")
-    plot.add_argument("--overwrite", action="store_true", help="replace pictures that are there")
-    plot.set_defaults(command=_plot)
-
-    info = commands.add_parser("info", parents=[*common], help="show what a result file or a case holds")
-    info.add_argument("file", metavar="FILE|CASE", help="a result file, a TOML file or the name of a shipped case")
-    info.add_argument("--json", action="store_true", help="as JSON")
-    add_set(info)
-    info.set_defaults(command=_info)
-
-
-def _plot(options: argparse.Namespace) -> int:
+@subcommand(
+    "plot",
+    "draw a result's pictures",
+    FILE,
+    argument("-o --output", "folder (default: FILE without its ending, + _plots)", "FOLDER"),
+    argument("--only", "draw these pictures only", "NAME", nargs="+"),
+    argument("--animation", "also write animation.gif"),
+    argument("--overwrite", "replace pictures that are there"),
+)
+def plot(options: Options) -> int:
     from trbdyn import plot
     from trbdyn.plot import animation
     from trbdyn.results.assembly import load
@@ -53,7 +44,14 @@ def _plot(options: argparse.Namespace) -> int:
     return DONE
 
 
-def _info(options: argparse.Namespace) -> int:
+@subcommand(
+    "info",
+    "show what a result file or a case holds",
+    argument("file", "a result file, a TOML file or the name of a shipped case", "FILE|CASE"),
+    argument("--json", "as JSON"),
+    SET,
+)
+def info(options: Options) -> int:
     from trbdyn.model.scene import Scene
 
     path = file_path(options.file, "file")

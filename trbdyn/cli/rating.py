@@ -2,39 +2,33 @@
 
 from __future__ import annotations
 
-import argparse
 import json
-from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from trbdyn.cli.case import add_set, subject_with_changes
+from trbdyn.cli.case import subject_with_changes
+from trbdyn.cli.declared import SET, Options, argument, subcommand
 from trbdyn.cli.outcome import DONE
 from trbdyn.errors import InputError
 
 RESULTS = (".h5", ".hdf5")
 
 
-def add_rating_parser(commands: Any, parents: Sequence[argparse.ArgumentParser]) -> None:
-    """Add the command ``rating``."""
-    rating = commands.add_parser(
-        "rating",
-        parents=[*parents],
-        help="rating lives, static safety and viscosity ratio of a case or a result",
-        description="Equivalent load, lives (ISO 281, ISO 16281), static safety (ISO 76) and viscosity ratio of a case, by its "
-        "equilibrium, or of a result, by its records. Of bearings on a shaft: each bearing, and the lives of all together.",
-    )
-    rating.add_argument("subject", metavar="CASE", help="a TOML file, the name of a shipped case, or a result file")
-    rating.add_argument("--cleanliness", metavar="CODE", help="particles in the oil (ISO 4406), for instance 17/14")
-    rating.add_argument("--filtered", action="store_true", default=None, help="circulating oil with an in-line filter")
-    rating.add_argument("--reliability", type=float, default=90.0, metavar="PERCENT", help="90, 95, 96, 97, 98 or 99")
-    rating.add_argument("--json", action="store_true", help="print the numbers as JSON, in SI units and hours")
-    add_set(rating)
-    rating.set_defaults(command=_rating)
-
-
-def _rating(options: argparse.Namespace) -> int:
+@subcommand(
+    "rating",
+    "rating lives, static safety and viscosity ratio of a case or a result",
+    argument("subject", "a TOML file, the name of a shipped case, or a result file", "CASE"),
+    argument("--cleanliness", "particles in the oil (ISO 4406), for instance 17/14", "CODE"),
+    argument("--filtered", "circulating oil with an in-line filter", default=None),
+    argument("--reliability", "90, 95, 96, 97, 98 or 99", "PERCENT", type=float, default=90.0),
+    argument("--json", "print the numbers as JSON, in SI units and hours"),
+    SET,
+)
+def rating(options: Options) -> int:
+    """Equivalent load, lives (ISO 281, ISO 16281), static safety (ISO 76) and viscosity ratio of a case, by its
+    equilibrium, or of a result, by its records. Of bearings on a shaft: each bearing, and the lives of all together.
+    """
     from trbdyn.results.assembly import load
     from trbdyn.results.summary import clean
     from trbdyn.run.rating import rating

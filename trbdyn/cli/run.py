@@ -2,78 +2,52 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Final
 
 from trbdyn.base.own_files import file_path, output_path
 from trbdyn.base.printable import printable
 from trbdyn.cli.called import command
-from trbdyn.cli.case import add_set, simulate, subject_with_changes
+from trbdyn.cli.case import named_numbers, simulate, subject_with_changes
+from trbdyn.cli.declared import CASE, LENGTH, SET, Options, argument, subcommand
 from trbdyn.cli.outcome import DONE, FAILED, say
-from trbdyn.errors import InputError
 
 if TYPE_CHECKING:
     from trbdyn.results.assembly import AssemblyResult
     from trbdyn.results.result import Result
 
 
-def add_run_parsers(
-    commands: Any, common: Sequence[argparse.ArgumentParser], length: Sequence[argparse.ArgumentParser]
-) -> None:
-    """Add the commands ``run`` and ``resume``."""
-    run = commands.add_parser("run", parents=[*common, *length], help="run a case")
-    run.add_argument("case", metavar="CASE", help="a TOML file, or the name of a shipped case")
-    run.add_argument("-o", "--output", metavar="FILE", help="result file (default: CASE.h5 in this folder)")
-    run.add_argument("--duration", type=float, metavar="S", help="bearing time (s), in place of revolutions")
-    run.add_argument(
+WRITTEN: Final = (
+    argument("--summary", "write the summary as JSON", "FILE"),
+    argument("--report", "write the report of the run, with its pictures", "HTML"),
+)
+
+
+@subcommand(
+    "run",
+    "run a case",
+    *LENGTH,
+    CASE,
+    argument("-o --output", "result file (default: CASE.h5 in this folder)", "FILE"),
+    argument("--duration", "bearing time (s), in place of revolutions", "S", type=float),
+    argument(
         "--until",
+        "end earlier, when this average of the summary is known within this share, for instance torque=0.01 "
+        "(may be given several times)",
+        "NAME=SHARE",
         action="append",
         default=[],
-        metavar="NAME=SHARE",
-        help="end earlier, when this average of the summary is known within this share, for instance torque=0.01 "
-        "(may be given several times)",
-    )
-    run.add_argument(
-        "--save-every",
-        type=float,
-        metavar="S",
-        help="time between records (s); default 1e-4, up to 1e-3 in long runs",
-    )
-    run.add_argument(
-        "--checkpoint-every", type=float, metavar="S", help="bearing time between checkpoints (s), to resume from"
-    )
-    run.add_argument("--overwrite", action="store_true", help="replace result, summary and report if they are there")
-    _add_written(run)
-    add_set(run)
-    run.set_defaults(command=_run)
-
-    resume = commands.add_parser("resume", parents=[*common], help="go on with a run that was cut off")
-    resume.add_argument("file", metavar="FILE", help="its result file; the checkpoint lies beside it")
-    resume.add_argument("--instruction-set", metavar="NAME", help="kernel variant, in place of the one it began with")
-    resume.add_argument("--quiet", action="store_true", help="no progress bar, no summary")
-    resume.add_argument("--overwrite", action="store_true", help="replace summary and report if they are there")
-    _add_written(resume)
-    resume.set_defaults(command=_resume)
-
-
-def _add_written(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--summary", metavar="FILE", help="write the summary as JSON")
-    parser.add_argument("--report", metavar="HTML", help="write the report of the run, with its pictures")
-
-
-def _wanted(text: str) -> tuple[str, float]:
-    name, _, share = text.partition("=")
-    try:
-        return name.strip(), float(share)
-    except ValueError:
-        raise InputError.of("--until", text, "must be NAME=SHARE, for instance torque=0.01") from None
-
-
-def _run(options: argparse.Namespace) -> int:
+    ),
+    argument("--save-every", "time between records (s); default 1e-4, up to 1e-3 in long runs", "S", type=float),
+    argument("--checkpoint-every", "bearing time between checkpoints (s), to resume from", "S", type=float),
+    argument("--overwrite", "replace result, summary and report if they are there"),
+    *WRITTEN,
+    SET,
+)
+def run(options: Options) -> int:
     subject, run = subject_with_changes(options.case, options.changes)
     changes = {
         name: getattr(options, name)
@@ -81,7 +55,7 @@ def _run(options: argparse.Namespace) -> int:
         if getattr(options, name) is not None
     }
     if options.until:
-        changes["until"] = dict(map(_wanted, options.until))
+        changes["until"] = named_numbers("--until", options.until, "NAME=SHARE", "torque=0.01")
     if "revolutions" in changes and "duration" not in changes:
         changes["duration"] = None
     if "duration" in changes and "revolutions" not in changes:
@@ -96,7 +70,7 @@ def _run(options: argparse.Namespace) -> int:
     return _finish(result, output, options)
 
 
-def _check_written(options: argparse.Namespace, others: Sequence[str | Path]) -> None:
+def _check_written(options: Options, others: Sequence[str | Path]) -> None:
     """See before a run that its summary and its report can be written."""
     from trbdyn.reporting import HTML
 
@@ -106,7 +80,16 @@ def _check_written(options: argparse.Namespace, others: Sequence[str | Path]) ->
             taken.append(output_path(file, overwrite=options.overwrite, field=field, endings=endings, reads=taken))
 
 
-def _resume(options: argparse.Namespace) -> int:
+@subcommand(
+    "resume",
+    "go on with a run that was cut off",
+    argument("file", "its result file; the checkpoint lies beside it", "FILE"),
+    argument("--instruction-set", "kernel variant, in place of the one it began with", "NAME"),
+    argument("--quiet", "no progress bar, no summary"),
+    argument("--overwrite", "replace summary and report if they are there"),
+    *WRITTEN,
+)
+def resume(options: Options) -> int:
     from trbdyn.run.resume import resume
 
     _check_written(options, [file_path(options.file, "file")])
@@ -127,7 +110,7 @@ def _how_to_go_on(output: Path) -> str:
     return f"; go on with: {command('resume', output)}" if checkpoint_path(output).exists() else ""
 
 
-def _finish(result: Result | AssemblyResult, output: Path, options: argparse.Namespace) -> int:
+def _finish(result: Result | AssemblyResult, output: Path, options: Options) -> int:
     """Write summary and report, print the summary; the exit code says whether the run reached its end."""
     from trbdyn.results import summary
 

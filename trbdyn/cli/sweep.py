@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from trbdyn.cli.called import command
+from trbdyn.cli.declared import Options, argument, subcommand
 from trbdyn.cli.outcome import DONE, FAILED, INTERRUPTED, say
 
 if TYPE_CHECKING:
@@ -27,25 +26,17 @@ COLUMNS: Final = (
 """Observables in the table that is printed."""
 
 
-def add_sweep_parser(commands: Any, parents: Sequence[argparse.ArgumentParser]) -> argparse.ArgumentParser:
-    """Add the subcommand to a parser's commands."""
-    sweep: argparse.ArgumentParser = commands.add_parser(
-        "sweep",
-        parents=[*parents],
-        help="run a parameter study",
-        description="Run a parameter study from a TOML file.",
-    )
-    sweep.add_argument("study", metavar="STUDY", help="a TOML file, or the name of a shipped study")
-    sweep.add_argument("-o", "--output", metavar="FOLDER", help="folder (default: STUDY without its ending)")
-    sweep.add_argument("--workers", type=int, metavar="N", help="worker processes (default, and at most: the cores)")
-    sweep.add_argument("--again", action="store_true", help="run cases again that are done")
-    sweep.add_argument("--quiet", action="store_true", help="no progress bar, no table")
-    sweep.set_defaults(command=run_sweep)
-    return sweep
-
-
-def run_sweep(options: argparse.Namespace) -> int:
-    """Run a study; the exit code is 0 if no case failed."""
+@subcommand(
+    "sweep",
+    "run a parameter study",
+    argument("study", "a TOML file, or the name of a shipped study", "STUDY"),
+    argument("-o --output", "folder (default: STUDY without its ending)", "FOLDER"),
+    argument("--workers", "worker processes (default, and at most: the cores)", "N", type=int),
+    argument("--again", "run cases again that are done"),
+    argument("--quiet", "no progress bar, no table"),
+)
+def sweep(options: Options) -> int:
+    """Run a parameter study from a TOML file."""
     from trbdyn.study.runner import run
     from trbdyn.study.study_file import load_study
 

@@ -2,53 +2,40 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
-from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
-from trbdyn.cli.case import add_set, subject_with_changes
+from trbdyn.cli.case import subject_with_changes
+from trbdyn.cli.declared import CASE, SET, WORKERS, Options, argument, subcommand
 from trbdyn.cli.outcome import DONE, FAILED, say
 from trbdyn.errors import MISSING, InputError
 
 
-def add_torque_parser(commands: Any, parents: Sequence[argparse.ArgumentParser]) -> None:
-    """Add the command ``torque``."""
-    torque = commands.add_parser(
-        "torque",
-        parents=[*parents],
-        help="friction torque over speed, load and temperature",
-        description="Friction torque of a case over speed, load and temperature of the oil, split by what loses it. Writes the "
-        "numbers as NAME.nc and a picture NAME.png.",
-    )
-    torque.add_argument("case", metavar="CASE", help="a TOML file, or the name of a shipped case")
-    torque.add_argument("--speeds", type=float, nargs="+", required=True, metavar="RPM", help="speeds of the shaft")
-    torque.add_argument(
+@subcommand(
+    "torque",
+    "friction torque over speed, load and temperature",
+    CASE,
+    argument("--speeds", "speeds of the shaft", "RPM", type=float, nargs="+", required=True),
+    argument(
         "--loads",
+        "axial loads (N), with a radial one behind a colon (default: those of the case of one bearing)",
+        "FA[:FR]",
         nargs="+",
-        metavar="FA[:FR]",
-        help="axial loads (N), with a radial one behind a colon (default: those of the case of one bearing)",
-    )
-    torque.add_argument(
-        "--temperatures", type=float, nargs="+", metavar="C", help="temperatures of the oil (default: that of the case)"
-    )
-    torque.add_argument(
-        "--tolerance", type=float, default=0.01, metavar="SHARE", help="change of a settled torque (default: 0.01)"
-    )
-    torque.add_argument(
-        "--bands", action="store_true", help="draw inputs that nobody knows exactly, and tell the band of each torque"
-    )
-    torque.add_argument("--samples", type=int, default=16, metavar="N", help="draws of each point (default: 16)")
-    torque.add_argument("--workers", type=int, metavar="N", help="runs at a time (default, and at most: the cores)")
-    torque.add_argument("-o", "--output", metavar="NAME", help="writes NAME.nc and NAME.png (default: CASE_torque)")
-    torque.add_argument("--overwrite", action="store_true", help="replace these files")
-    torque.add_argument("--quiet", action="store_true", help="no progress bar, no table")
-    add_set(torque)
-    torque.set_defaults(command=_torque)
-
-
-def _torque(options: argparse.Namespace) -> int:
+    ),
+    argument("--temperatures", "temperatures of the oil (default: that of the case)", "C", type=float, nargs="+"),
+    argument("--tolerance", "change of a settled torque (default: 0.01)", "SHARE", type=float, default=0.01),
+    argument("--bands", "draw inputs that nobody knows exactly, and tell the band of each torque"),
+    argument("--samples", "draws of each point (default: 16)", "N", type=int, default=16),
+    WORKERS,
+    argument("-o --output", "writes NAME.nc and NAME.png (default: CASE_torque)", "NAME"),
+    argument("--overwrite", "replace these files"),
+    argument("--quiet", "no progress bar, no table"),
+    SET,
+)
+def torque(options: Options) -> int:
+    """Friction torque of a case over speed, load and temperature of the oil, split by what loses it. Writes the numbers as
+    NAME.nc and a picture NAME.png.
+    """
     from trbdyn.base.own_files import output_path
     from trbdyn.model.motion import value_at
     from trbdyn.model.scene import Scene

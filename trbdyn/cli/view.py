@@ -2,50 +2,32 @@
 
 from __future__ import annotations
 
-import argparse
 import webbrowser
-from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from trbdyn.base.own_files import file_path, output_path
+from trbdyn.cli.declared import FILE, Options, argument, subcommand
 from trbdyn.cli.outcome import say
 
 if TYPE_CHECKING:
     from trbdyn.results.result import Result
 
 
-def add_view_parser(commands: Any, parents: Sequence[argparse.ArgumentParser]) -> None:
-    """Add the command ``view``."""
-    view = commands.add_parser("view", parents=[*parents], help="show a result as a moving 3-D view in a browser")
-    view.add_argument("file", metavar="FILE", help="a result file")
-    view.add_argument(
-        "-o", "--output", metavar="HTML", help="HTML file to write (default: FILE without its ending, + _view.html)"
-    )
-    view.add_argument(
-        "--revolutions",
-        type=float,
-        default=10.0,
-        metavar="N",
-        help="last turns of the shaft to show (default 10); 0: all",
-    )
-    view.add_argument("--frames", type=int, default=600, metavar="N", help="most records to take (default 600)")
-    view.add_argument(
-        "--max-size", type=float, default=12.0, metavar="MB", help="largest size of the file (default 12 MB)"
-    )
-    view.add_argument(
-        "--exaggeration",
-        type=float,
-        metavar="X",
-        help="factor by which motion and clearances are drawn larger at the start",
-    )
-    view.add_argument("--gltf", metavar="GLB", help="also write an animated glTF file (its last 2 turns of the shaft)")
-    view.add_argument("--overwrite", action="store_true", help="replace these files if they are there")
-    view.add_argument("--no-open", action="store_true", help="write the file, open no browser")
-    view.set_defaults(command=_view)
-
-
-def _view(options: argparse.Namespace) -> int:
+@subcommand(
+    "view",
+    "show a result as a moving 3-D view in a browser",
+    FILE,
+    argument("-o --output", "HTML file to write (default: FILE without its ending, + _view.html)", "HTML"),
+    argument("--revolutions", "last turns of the shaft to show (default 10); 0: all", "N", type=float, default=10.0),
+    argument("--frames", "most records to take (default 600)", "N", type=int, default=600),
+    argument("--max-size", "largest size of the file (default 12 MB)", "MB", type=float, default=12.0),
+    argument("--exaggeration", "factor by which motion and clearances are drawn larger at the start", "X", type=float),
+    argument("--gltf", "also write an animated glTF file (its last 2 turns of the shaft)", "GLB"),
+    argument("--overwrite", "replace these files if they are there"),
+    argument("--no-open", "write the file, open no browser"),
+)
+def view(options: Options) -> int:
     from trbdyn.results.assembly import load
     from trbdyn.viewer import save_gltf, view
 
