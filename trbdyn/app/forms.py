@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import base64
-import io
+import contextlib
 import threading
 import tomllib
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import events, run, ui
@@ -19,6 +19,7 @@ from trbdyn.errors import TrbError
 from trbdyn.model.cases import BEARINGS
 from trbdyn.model.effects import Effects
 from trbdyn.model.pocket_shapes import SHAPES
+from trbdyn.reporting.page import image
 from trbdyn.run.toml_assembly import subject_from_dict
 
 if TYPE_CHECKING:
@@ -199,21 +200,12 @@ def _drawn(bearing: Bearing) -> list[str]:
     import matplotlib
 
     matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
 
     from trbdyn.plot import bearing_drawing, pocket_drawing
 
     found = []
-    makers: tuple[Callable[[Bearing], Any], ...] = (bearing_drawing, pocket_drawing)
     with _DRAWING:
-        for make in makers:
-            try:
-                made = make(bearing)
-            except TrbError:
-                continue
-            figure = made if hasattr(made, "savefig") else made.figure
-            stream = io.BytesIO()
-            figure.savefig(stream, format="png", dpi=100)
-            plt.close(figure)
-            found.append(f"data:image/png;base64,{base64.b64encode(stream.getvalue()).decode()}")
+        for draw in (bearing_drawing, pocket_drawing):
+            with contextlib.suppress(TrbError):
+                found.append(image(partial(draw, bearing), dpi=100))
     return found

@@ -163,7 +163,7 @@ def _simulated(results: Sequence[Result], names: Sequence[str]) -> str:
     return f"<h2>What was simulated</h2><div class='pictures'>{''.join(figures)}</div>"
 
 
-def image(draw: Callable[[], Axes | Figure]) -> str:
+def image(draw: Callable[[], Axes | Figure], dpi: int = 110) -> str:
     """A picture as the address of a PNG image that holds its own data."""
     import matplotlib.pyplot as plt
     from matplotlib.figure import Figure
@@ -176,7 +176,7 @@ def image(draw: Callable[[], Axes | Figure]) -> str:
     paper = io.BytesIO()
     try:
         with styled():
-            figure.savefig(paper, format="png", dpi=110)
+            figure.savefig(paper, format="png", dpi=dpi)
     finally:
         plt.close(figure)
     return "data:image/png;base64," + base64.b64encode(paper.getvalue()).decode("ascii")
