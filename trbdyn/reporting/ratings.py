@@ -33,14 +33,11 @@ def ratings_section(sheets: Sequence[Rating | str], names: Sequence[str]) -> str
         if isinstance(found, str):
             parts.append(f"{of}<p>No ratings: {safe(found)}.</p>")
             continue
-        rows = [
-            (f"{row.words} {row.symbol}", row.shown, row.unit, row.note)
-            for row in found.rows
-            if row.value is not None or row.note
-        ]
         notes = "".join(f"<li>{safe(text)}</li>" for text in found.warnings)
         listed = f"<ul class='warnings'>{notes}</ul>" if notes else ""
-        parts.append(f"{of}{listed}{table_of(('quantity', 'value', 'unit', 'where it comes from'), rows)}")
+        parts.append(
+            f"{of}{listed}{table_of(('quantity', 'value', 'unit', 'where it comes from'), found._shown().rows)}"
+        )
     return f"<details><summary>Ratings and lives</summary>{''.join(parts)}<p>{safe(WHICH_LIFE)}</p></details>"
 
 

@@ -97,26 +97,22 @@ def _pose(result: Result, index: NDArray[np.int64]) -> dict[str, Array]:
     bearing, geometry = result.scene.bearing, result.scene.bearing.geometry
     count = bearing.n_rollers
     orbit, position = result["roller_orbit_angle"][index], result["roller_position"][index]
-    even = 2.0 * np.pi * np.arange(count) / count
+    even, still = 2.0 * np.pi * np.arange(count) / count, np.zeros((index.size, 3))
     if result.has_cage:
         angle, place, tilt = result["cage_angle"][index], result["cage_position"][index], result["cage_tilt"][index]
     else:
         angle = (orbit - even).mean(axis=1)
-        place, tilt = np.zeros((index.size, 3)), np.zeros((index.size, 2))
-    ring = result["ring_position"][index] if "ring_position" in result else np.zeros((index.size, 3))
-    turned = _ring_tilt(result, index)
-    moves = result.housing_moves and "housing_position" in result
-    cup = result["housing_position"][index] if moves else np.zeros((index.size, 3))
-    cup_turned = result["housing_tilt"][index] if moves else np.zeros((index.size, 2))
+        place, tilt = still, still[:, :2]
+    bodies = [("cage", place, tilt), ("ring", still, _ring_tilt(result, index)), ("cup", still, still[:, :2])]
+    if "ring_position" in result:
+        bodies[1] = ("ring", result["ring_position"][index], bodies[1][2])
+    if result.housing_moves and "housing_position" in result:
+        bodies[2] = ("cup", result["housing_position"][index], result["housing_tilt"][index])
     pose = {
         "shaft": result["shaft_angle"][index],
         "cage_angle": angle,
-        **{f"cage_{axis}": place[:, k] for k, axis in enumerate("xyz")},
-        **{f"cage_tilt_{axis}": tilt[:, k] for k, axis in enumerate("xy")},
-        **{f"ring_{axis}": ring[:, k] for k, axis in enumerate("xyz")},
-        **{f"ring_tilt_{axis}": turned[:, k] for k, axis in enumerate("xy")},
-        **{f"cup_{axis}": cup[:, k] for k, axis in enumerate("xyz")},
-        **{f"cup_tilt_{axis}": cup_turned[:, k] for k, axis in enumerate("xy")},
+        **{f"{body}_{axis}": at[:, k] for body, at, _ in bodies for k, axis in enumerate("xyz")},
+        **{f"{body}_tilt_{axis}": leans[:, k] for body, _, leans in bodies for k, axis in enumerate("xy")},
         "psi": orbit - angle[:, None] - even,
         "r": np.hypot(position[..., 0], position[..., 1]) - geometry.roller_centre_radius,
         "z": position[..., 2] - geometry.roller_centre_height,
@@ -189,8 +185,7 @@ def largest_between(values: Array, index: NDArray[np.int64]) -> Array:
 def _along(result: Result, index: NDArray[np.int64]) -> Quantity:
     """Pressure along the rollers at both raceways, evaluated again by the core: the larger of both."""
     replay = Replay(result)
-    stations = replay.stations
-    keep = np.unique(np.linspace(0, stations.size - 1, min(MAX_STATIONS, stations.size)).round().astype(int))
+    keep = _kept(replay)
     rows = [replay.contacts(int(k))["raceway_pressure"].max(axis=0)[:, keep] for k in index]
     values = 1e-9 * np.array(rows)
     return Quantity("pressure_along", "pressure along the roller, larger of both raceways", "GPa", values, "station")
@@ -198,8 +193,13 @@ def _along(result: Result, index: NDArray[np.int64]) -> Quantity:
 
 def stations(result: Result) -> Array:
     """Places of the values of ``pressure_along`` along the roller (m)."""
-    every = Replay(result).stations
-    return every[np.unique(np.linspace(0, every.size - 1, min(MAX_STATIONS, every.size)).round().astype(int))]
+    replay = Replay(result)
+    return replay.stations[_kept(replay)]
+
+
+def _kept(replay: Replay) -> NDArray[np.int64]:
+    count = replay.stations.size
+    return np.unique(np.linspace(0, count - 1, min(MAX_STATIONS, count)).round().astype(np.int64))
 
 
 def default_factor(result: Result, largest: float) -> float:

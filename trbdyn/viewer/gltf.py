@@ -164,8 +164,8 @@ class _Document:
         index = self._accessor(mesh.index.astype(np.uint32).reshape(-1, 1), "SCALAR", 34963)
         return {"attributes": attributes, "indices": index, "material": list(_COLOURS).index(material)}
 
-    def _mesh(self, name: str, *primitives: dict[str, Any]) -> int:
-        self.parts.append({"name": name, "primitives": list(primitives)})
+    def _mesh(self, name: str, *meshes: tuple[Mesh, str]) -> int:
+        self.parts.append({"name": name, "primitives": [self._primitive(mesh, material) for mesh, material in meshes]})
         return len(self.parts) - 1
 
     def _node(self, name: str, mesh: int) -> int:
@@ -177,24 +177,24 @@ class _Document:
 
         meshes, count = self.meshes, self.bearing.n_rollers
         time, pose = _keys(taken, seconds_per_turn, count)
-        cup = self._node("cup", self._mesh("cup", self._primitive(meshes.outer, "cup")))
+        cup = self._node("cup", self._mesh("cup", (meshes.outer, "cup")))
         self._time = self._accessor(time.reshape(-1, 1), "SCALAR")
         if any(np.any(pose[f"cup_{axis}"]) for axis in "xyz"):
-            self._move(cup, *self._cup(pose))
-        cone = self._node("cone", self._mesh("cone", self._primitive(meshes.inner, "cone")))
-        self._move(cone, *self._ring(pose))
+            self._move(cup, *self._body(pose, "cup"))
+        ring = self._body(pose, "ring", pose["shaft"])
+        self._move(self._node("cone", self._mesh("cone", (meshes.inner, "cone"))), *ring)
         if meshes.land is not None:
-            land = self._node("land", self._mesh("land", self._primitive(meshes.land, "cup")))
+            land = self._node("land", self._mesh("land", (meshes.land, "cup")))
             if meshes.land_turns:
-                self._move(land, *self._ring(pose))
-        roller = self._mesh("roller", self._primitive(meshes.roller, "rollers"), self._primitive(meshes.mark, "mark"))
+                self._move(land, *ring)
+        roller = self._mesh("roller", (meshes.roller, "rollers"), (meshes.mark, "mark"))
         for number in range(count):
             self._move(self._node(f"roller {number}", roller), *self._roller(pose, number))
         if self.has_cage:
             faces = join([face.mesh for face in meshes.faces])
             whole = meshes.cage if meshes.guide is None else join([meshes.cage, meshes.guide])
-            body = self._mesh("cage", self._primitive(whole, "cage"), self._primitive(faces, "pocket"))
-            self._move(self._node("cage", body), *self._cage(pose))
+            body = self._node("cage", self._mesh("cage", (whole, "cage"), (faces, "pocket")))
+            self._move(body, *self._body(pose, "cage", pose["cage_angle"]))
         name = f"{self.bearing.name}, motion and clearances x {self.factor:g}"
         head = {
             "asset": {"version": "2.0", "generator": "trbdyn"},
@@ -224,20 +224,12 @@ class _Document:
             self.samplers.append(sampler)
             self.channels.append({"sampler": len(self.samplers) - 1, "target": {"node": node, "path": path}})
 
-    def _ring(self, pose: dict[str, Array]) -> tuple[Array, Rotation]:
-        place = self.factor * np.stack([pose[f"ring_{axis}"] for axis in "xyz"], axis=1)
-        return place, self._tilted(pose, "ring") * _about("z", pose["shaft"])
-
-    def _cup(self, pose: dict[str, Array]) -> tuple[Array, Rotation]:
-        return self.factor * np.stack([pose[f"cup_{axis}"] for axis in "xyz"], axis=1), self._tilted(pose, "cup")
-
-    def _cage(self, pose: dict[str, Array]) -> tuple[Array, Rotation]:
-        place = self.factor * np.stack([pose[f"cage_{axis}"] for axis in "xyz"], axis=1)
-        return place, self._tilted(pose, "cage") * _about("z", pose["cage_angle"])
-
-    def _tilted(self, pose: dict[str, Array], body: str) -> Rotation:
-        turn = np.stack([pose[f"{body}_tilt_x"], pose[f"{body}_tilt_y"], np.zeros_like(pose["shaft"])], axis=1)
-        return Rotation.from_rotvec(self.factor * turn)
+    def _body(self, pose: dict[str, Array], body: str, angle: Array | None = None) -> tuple[Array, Rotation]:
+        """Place and turn of cup, ring or cage, which has turned about its axis by an angle (rad)."""
+        place = self.factor * np.stack([pose[f"{body}_{axis}"] for axis in "xyz"], axis=1)
+        tilt = np.stack([pose[f"{body}_tilt_x"], pose[f"{body}_tilt_y"], np.zeros_like(pose["shaft"])], axis=1)
+        tilted = Rotation.from_rotvec(self.factor * tilt)
+        return place, tilted if angle is None else tilted * _about("z", angle)
 
     def _roller(self, pose: dict[str, Array], number: int) -> tuple[Array, Rotation]:
         geometry, factor = self.bearing.geometry, self.factor

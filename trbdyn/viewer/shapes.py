@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import ConvexHull
 
+from trbdyn.cage.cage_solid import pocket_axes
 from trbdyn.model.outlines import cone_outline, cup_outline, rail_bands
 from trbdyn.model.profiles import profile_drop
 from trbdyn.viewer.meshes import Mesh, flat_mesh, join, revolve, strip
@@ -151,21 +152,13 @@ def _mark(bearing: Bearing) -> Mesh:
 # ---- cage ----
 
 
-def pocket_frame(bearing: Bearing, pocket: int) -> tuple[Array, Array]:
-    """Origin (3,) of a pocket's frame in the cage's, and its axes n, t, a as rows (3, 3)."""
-    geometry, turn = bearing.geometry, 2.0 * np.pi * pocket / bearing.n_rollers
-    cosine, sine = np.cos(geometry.roller_axis_angle), np.sin(geometry.roller_axis_angle)
-    rotation = np.array([[np.cos(turn), -np.sin(turn), 0.0], [np.sin(turn), np.cos(turn), 0.0], [0.0, 0.0, 1.0]])
-    axes = np.array([[cosine, 0.0, -sine], [0.0, 1.0, 0.0], [sine, 0.0, cosine]])
-    return rotation @ np.array([0.5 * bearing.pitch_diameter, 0.0, 0.0]), axes @ rotation.T
-
-
 def _faces(bearing: Bearing) -> tuple[FaceMesh, ...]:
     out = []
     for number in range(bearing.n_rollers):
         pocket = bearing.pocket_of(number)
         gaps = pocket.gaps(bearing.geometry)
-        origin, axes = pocket_frame(bearing, number)
+        turn, axes = 2.0 * np.pi * number / bearing.n_rollers, pocket_axes(bearing, number)
+        origin = 0.5 * bearing.pitch_diameter * np.array([np.cos(turn), np.sin(turn), 0.0])
         for face in pocket.faces:
             points = origin + face.vertices @ axes
             normal = face.normal @ axes
