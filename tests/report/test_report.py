@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
+from trbdyn.base.shown import field_texts
 from trbdyn.cli import main
 from trbdyn.plot import PICTURES
 from trbdyn.reporting import converter
 from trbdyn.reporting.captions import CAPTIONS
-from trbdyn.reporting.inputs import field_texts, rows
+from trbdyn.reporting.inputs import rows
 from trbdyn.reporting.verdict import verdict
 from trbdyn.results.quantities import QUANTITIES
 from trbdyn.run import estimate
