@@ -28,6 +28,11 @@ SHARED: Final = {
     )
 }
 """Arguments that several pictures have: each is described once."""
+NEEDED: Final = {
+    "on": "Needs the group cage; rollers and peaks for the outer ring.",
+    "ring": "Needs the groups time and ring, or housing for the outer ring.",
+}
+"""What the result must have for a picture with one of these arguments."""
 SECTION: Final = re.compile(r"\n*^(Parameters|Returns|Raises|Examples)\n-+\n", re.MULTILINE)
 
 
@@ -39,7 +44,9 @@ def describe(draw: Callable[..., Any], groups: Sequence[str]) -> None:
     words, *parts = SECTION.split(inspect.cleandoc(draw.__doc__ or ""))
     sections = dict(zip(parts[::2], parts[1::2], strict=True))
     known = dict(SHARED)
-    if groups:
+    for name in NEEDED.keys() & signature.parameters.keys():
+        known["result"] = f"result : Result\n    {NEEDED[name]}"
+    if groups and "ring" not in signature.parameters:
         known["result"] = (
             f"result : Result\n    Needs the groups {' and '.join([', '.join(['time', *groups[:-1]]), groups[-1]])}."
         )

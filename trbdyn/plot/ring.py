@@ -37,13 +37,7 @@ def _ring_of(ring: Ring) -> tuple[str, str]:
 
 
 def ring_orbit(result: Result, ax: Axes | None = None, last: float | None = 12.0, *, ring: Ring = "inner") -> Axes:
-    """Path of a ring's centre in the plane of the rollers' centres, seen from the large ends, about its mean place.
-
-    Parameters
-    ----------
-    result : Result
-        Needs the groups time and ring, or housing for the outer ring.
-    """
+    """Path of a ring's centre in the plane of the rollers' centres, seen from the large ends, about its mean place."""
     group, name = _ring_of(ring)
     shown = last_turns(result, last)
     with canvas(ax, (5.2, 4.4), f"Path of the centre of the {name}") as ax:
@@ -66,13 +60,7 @@ def draw_path(ax: Axes, place: Array, turned: Array) -> PathCollection:
 
 
 def ring_motion(result: Result, last: float | None = None, *, ring: Ring = "inner") -> Figure:
-    """Displacement and tilt of a ring over the turns of the shaft.
-
-    Parameters
-    ----------
-    result : Result
-        Needs the groups time and ring, or housing for the outer ring.
-    """
+    """Displacement and tilt of a ring over the turns of the shaft."""
     group, title = _ring_of(ring)
     shown = last_turns(result, last)
     place, tilt = shown[f"{group}_position"], shown[f"{group}_tilt"]

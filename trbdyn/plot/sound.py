@@ -28,8 +28,6 @@ def force_spectrum(
 
     Parameters
     ----------
-    result : Result
-        Needs the group cage; rollers and peaks for the outer ring.
     highest : float, optional
         Highest frequency to show (Hz); half of that of the records by default.
     """
@@ -59,8 +57,6 @@ def octave_levels(
 
     Parameters
     ----------
-    result : Result
-        Needs the group cage; rollers and peaks for the outer ring.
     fraction : {1, 3}
         1: octaves; 3: third octaves.
     """

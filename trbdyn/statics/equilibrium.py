@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
@@ -20,6 +19,8 @@ if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
 
 Array = NDArray[np.float64]
+Near = tuple[Array, Array]
+"""Where the ring may stand (m, rad), shape (5,), and its rollers as `Equilibrium.rollers` (m, rad), shape (Z, 4)."""
 
 JUST_CARRIES: Final = 1.0001
 """Axial load, over `least_axial_load`, under which a ring just carries."""
@@ -83,37 +84,28 @@ class EquilibriumSolver:
         self.model, self.scene, self.angles = model, scene, angles
         self._rests: dict[tuple[float, float], float] = {}
 
-    def solve(
-        self,
-        time: float,
-        *,
-        guess: Sequence[Equilibrium] | None = None,
-        share: float = 0.0,
-        displacement: Array | None = None,
-    ) -> Equilibrium:
+    def solve(self, time: float, *, near: Near | None = None, displacement: Array | None = None) -> Equilibrium:
         """The equilibrium under the load at a time (s), or with the ring at a displacement (m, rad), shape (5,), whatever its
         load is.
 
-        With a guess, two equilibria close by, the search starts from `share` of the way from the first to the second.
+        The search starts from a place of ring and rollers close by, if one is given.
         """
         load = ring_load(self.scene, time)
         if displacement is None and self.scene.unloaded == "rests":
-            return self._no_further(load, time, guess, share)
-        return self._solve(load, time, guess, share, displacement)
+            return self._no_further(load, time, near)
+        return self._solve(load, time, near, displacement)
 
-    def _no_further(
-        self, load: RingLoad, time: float, guess: Sequence[Equilibrium] | None, share: float
-    ) -> Equilibrium:
+    def _no_further(self, load: RingLoad, time: float, near: Near | None) -> Equilibrium:
         """The equilibrium of a ring that goes no further than where it just carries; its loads hold it there or before."""
         rest = self._resting(load, time)
         if -load.force[2] > _just_carried(self.scene, time):
             with contextlib.suppress(LoadError):
-                found = self._solve(load, time, guess, share, None)
+                found = self._solve(load, time, near)
                 if found.displacement[2] <= rest:
                     return found
         fixed, place = load.fixed.copy(), load.displacement.copy()
         fixed[2], place[2] = 1.0, rest
-        return self._solve(replace(load, fixed=fixed, displacement=place), time, guess, share, None)
+        return self._solve(replace(load, fixed=fixed, displacement=place), time, near)
 
     def _resting(self, load: RingLoad, time: float) -> float:
         """Axial place (m) at which rollers and rings just touch at a speed: rollers that orbit press into the cup."""
@@ -125,7 +117,7 @@ class EquilibriumSolver:
             for more in MORE_CARRIED if axial > 0.0 else ():
                 force = np.array([0.0, 0.0, -(least + more * (axial - least))])
                 try:
-                    place = float(self._solve(replace(alone, force=force), time, None, 0.0, None).displacement[2])
+                    place = float(self._solve(replace(alone, force=force), time).displacement[2])
                     break
                 except LoadError:
                     if more == MORE_CARRIED[-1]:
@@ -134,20 +126,12 @@ class EquilibriumSolver:
         return self._rests[speeds]
 
     def _solve(
-        self,
-        load: RingLoad,
-        time: float,
-        guess: Sequence[Equilibrium] | None,
-        share: float,
-        displacement: Array | None,
+        self, load: RingLoad, time: float, near: Near | None = None, displacement: Array | None = None
     ) -> Equilibrium:
         fixed = load.fixed if displacement is None else np.ones(5)
         place, rollers, rough = load.displacement if displacement is None else displacement, None, False
-        if guess is not None:
-            first, second = guess
-            near = first.displacement + share * (second.displacement - first.displacement)
-            place = np.where(fixed > 0.0, place, near)
-            rollers = (first.rollers + share * (second.rollers - first.rollers)).ravel()
+        if near is not None:
+            place, rollers = np.where(fixed > 0.0, place, near[0]), near[1].ravel()
         elif displacement is None and self.scene.bearing.is_cylindrical:
             (place, rollers), rough = self._touching(load), True
         force = np.concatenate([load.force, load.moment])
@@ -157,8 +141,8 @@ class EquilibriumSolver:
         try:
             found = self._balanced(load, force, fixed, place, rollers, rough=rough)
         except _core.CoreLoadError as error:
-            # starts that were not tried yet: without the guess, and where the axial position is given with play
-            trials: list[tuple[Array, Array | None]] = [(load.displacement, None)] if guess is not None else []
+            # starts that were not tried yet: not from close by, and where the axial position is given with play
+            trials: list[tuple[Array, Array | None]] = [(load.displacement, None)] if near is not None else []
             if self.scene.bearing.is_cylindrical:
                 trials.append((load.displacement, None))
             elif load.displacement[2] > 0.0:

@@ -176,12 +176,14 @@ class _Search:
             raise InputError.of("ring", "follows", limit)
         place = bisect.bisect(self.times, time)
         after = min(max(place, 1), len(self.times) - 1)
-        near = [self.known[self.times[max(after - 1, 0)]], self.known[self.times[after]]]
-        span = self.times[after] - self.times[max(after - 1, 0)]
-        share = (time - self.times[max(after - 1, 0)]) / span if span > 0.0 else 0.0
-        # a guess far beyond the last equilibrium is worse than that equilibrium itself
-        guess = near if 0.0 <= share <= 2.0 else [near[1], near[1]]
-        found = self.solver.solve(time, guess=guess, share=share)
+        before, beyond = self.times[max(after - 1, 0)], self.times[after]
+        share = (time - before) / (beyond - before) if beyond > before else 0.0
+        first, second = self.known[before], self.known[beyond]
+        if not 0.0 <= share <= 2.0:  # a guess far beyond the last equilibrium is worse than that equilibrium itself
+            first = second
+        ring = first.displacement + share * (second.displacement - first.displacement)
+        rollers = first.rollers + share * (second.rollers - first.rollers)
+        found = self.solver.solve(time, near=(ring, rollers))
         self.times.insert(place, time)
         self.known[time] = found
         return found

@@ -157,14 +157,7 @@ class Stiffness(Tabled):
 def vibrations(stiffness: Array, mass: Array, spin: float, radius: float) -> Modes:
     """Natural vibrations of a rigid body with five coordinates, without damping.
 
-    Parameters
-    ----------
-    stiffness, mass : ndarray, shape (5, 5)
-        Of displacement along x, y, z (m) and rotation about x, y (rad).
-    spin : float
-        Angular momentum about the body's axis (kg m2/s).
-    radius : float
-        Radius at which rotations count in shapes (m).
+    The spin is its angular momentum about its axis (kg m2/s); rotations count in shapes at a radius (m).
     """
     gyro = np.zeros((5, 5))
     gyro[3, 4], gyro[4, 3] = spin, -spin
