@@ -5,7 +5,7 @@ along the rollers.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -17,10 +17,8 @@ from trbdyn.errors import InputError
 from trbdyn.plot.cage import last_turns
 from trbdyn.plot.style import COLOURS, GREY, LINES, legend, sequence, styled
 from trbdyn.results.fields import contacts
+from trbdyn.results.result import Result
 from trbdyn.run.replay import Replay
-
-if TYPE_CHECKING:
-    from trbdyn.results.result import Result
 
 Array = NDArray[np.float64]
 

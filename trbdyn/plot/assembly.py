@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -22,13 +22,11 @@ from trbdyn.plot.cage import revolutions, turns_label
 from trbdyn.plot.drawing import ROLLER, STEEL, placed, roller_outline
 from trbdyn.plot.ring import draw_motion, draw_path
 from trbdyn.plot.style import COLOURS, GREY, LIGHT, LINES, canvas, legend, line, plain, styled
+from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.result import Result
 from trbdyn.statics.assembly import ShaftEquilibrium, equilibrium
 from trbdyn.statics.preload import PreloadDiagram
 from trbdyn.statics.preload import preload_diagram as diagram_of
-
-if TYPE_CHECKING:
-    from trbdyn.results.assembly import AssemblyResult
 
 Array = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ All of them raise `InputError` for a run without a cage.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Final, Literal
+from typing import Final, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,9 +17,7 @@ from matplotlib.ticker import MultipleLocator
 from trbdyn.errors import InputError
 from trbdyn.plot.style import COLOURS, GREY, LINES, canvas, is_own, legend, line, sequence
 from trbdyn.results import observables
-
-if TYPE_CHECKING:
-    from trbdyn.results.result import Result
+from trbdyn.results.result import Result
 
 LEAST_SPAN: Final = 0.1
 """Room on both sides of the marks of a map, over the largest value."""

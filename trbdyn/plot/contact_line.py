@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
 
 from trbdyn.model.contact_line import stations
 from trbdyn.model.profiles import profile_drop, raceway_drops
+from trbdyn.model.scene import Scene
 from trbdyn.plot.style import legend, line, styled
 from trbdyn.run.simulation import Simulation
-
-if TYPE_CHECKING:
-    from trbdyn.model.scene import Scene
 
 NODES = 64
 EDGE = 0.05

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -23,15 +23,13 @@ from numpy.typing import NDArray
 from trbdyn.base.own_files import digest_of
 from trbdyn.cage.cage_solid import pocket_axes
 from trbdyn.errors import InputError
+from trbdyn.model.bearing import Bearing
 from trbdyn.model.drawn.opened import STEP_ENDINGS, opened
 from trbdyn.model.outlines import cone_outline, cup_outline, rail_bands
+from trbdyn.model.pocket import Face
 from trbdyn.model.profiles import profile_drop
+from trbdyn.model.trace import Trace
 from trbdyn.plot.style import COLOURS, GREY, canvas, colour_of, plain, styled
-
-if TYPE_CHECKING:
-    from trbdyn.model.bearing import Bearing
-    from trbdyn.model.pocket import Face
-    from trbdyn.model.trace import Trace
 
 Array = NDArray[np.float64]
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,9 +13,7 @@ from matplotlib.figure import Figure
 from trbdyn.cage.simulated import cage_modes, displacements
 from trbdyn.errors import InputError
 from trbdyn.plot.style import COLOURS, GREY, canvas, sequence, styled
-
-if TYPE_CHECKING:
-    from trbdyn.results.result import Result
+from trbdyn.results.result import Result
 
 __all__ = ["cage_shape", "cage_stress"]
 

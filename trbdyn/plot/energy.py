@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
 
 from trbdyn.plot.cage import revolutions, turns_label
 from trbdyn.plot.style import COLOURS, LINES, canvas, envelope, legend
-
-if TYPE_CHECKING:
-    from trbdyn.results.result import Result
+from trbdyn.results.result import Result
 
 
 def _bars(ax: Axes, values: Mapping[str, float], unit: str, total: float) -> None:

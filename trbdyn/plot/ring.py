@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -15,9 +15,7 @@ from trbdyn.errors import InputError
 from trbdyn.plot.cage import last_turns, revolutions, turns_label
 from trbdyn.plot.style import COLOURS, GREY, canvas, legend, line, sequence, styled
 from trbdyn.results import observables
-
-if TYPE_CHECKING:
-    from trbdyn.results.result import Result
+from trbdyn.results.result import Result
 
 Array = NDArray[np.float64]
 Ring = Literal["inner", "outer"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -17,9 +17,7 @@ from trbdyn.errors import InputError
 from trbdyn.plot.cage import last_turns, need_cage, revolutions, turns_label
 from trbdyn.plot.style import COLOURS, GREY, LIGHT, MARKERS, OWN, canvas, legend, line, sequence, styled
 from trbdyn.results.fields import contacts
-
-if TYPE_CHECKING:
-    from trbdyn.results.result import Result
+from trbdyn.results.result import Result
 
 BINS = 72
 STRETCHES = 300

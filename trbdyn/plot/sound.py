@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 from matplotlib.axes import Axes
 
 from trbdyn.plot.ring import ring_orders
 from trbdyn.plot.style import COLOURS, canvas, legend
-
-if TYPE_CHECKING:
-    from trbdyn.results.forces import Along, On
-    from trbdyn.results.result import Result
+from trbdyn.results.forces import Along, On
+from trbdyn.results.result import Result
 
 
 def force_spectrum(

@@ -5,7 +5,7 @@ time.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,9 +16,7 @@ from trbdyn.errors import InputError
 from trbdyn.plot.cage import revolutions, turns_label
 from trbdyn.plot.style import COLOURS, GREY, LINES, canvas, legend, line, sequence, thin
 from trbdyn.results import observables
-
-if TYPE_CHECKING:
-    from trbdyn.results.result import Result
+from trbdyn.results.result import Result
 
 Array = NDArray[np.float64]
 

@@ -16,6 +16,8 @@ from trbdyn.reporting.inputs import Row, rows
 from trbdyn.reporting.ratings import frequencies_section, ratings_section, sheet_of, system_section
 from trbdyn.reporting.tables import safe
 from trbdyn.reporting.verdict import verdict, warnings
+from trbdyn.results.assembly import AssemblyResult
+from trbdyn.results.result import Result
 from trbdyn.results.summary import ratings
 from trbdyn.run.bias import biases
 from trbdyn.standards.sheet import Rating
@@ -24,8 +26,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from trbdyn.results.assembly import AssemblyResult
-    from trbdyn.results.result import Result
 
 UNFOLD = "addEventListener('beforeprint', () => document.querySelectorAll('details').forEach((one) => { one.open = true; }));"
 """What is folded on a screen is printed."""

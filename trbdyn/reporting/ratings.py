@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from trbdyn.errors import InputError, TrbError
 from trbdyn.reporting.tables import safe, table_of
+from trbdyn.results.assembly import AssemblyResult
+from trbdyn.results.result import Result
 from trbdyn.results.summary import steady_sheet
 from trbdyn.run.rating import rating
 from trbdyn.standards.frequencies import frequencies
 from trbdyn.standards.sheet import WHICH_LIFE, Rating
-
-if TYPE_CHECKING:
-    from trbdyn.results.assembly import AssemblyResult
-    from trbdyn.results.result import Result
 
 
 def sheet_of(result: Result) -> Rating | str:

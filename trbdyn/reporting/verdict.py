@@ -8,19 +8,17 @@ rollers on.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
 from trbdyn.model.motion import value_at
 from trbdyn.results.fields import contacts
+from trbdyn.results.result import Result
 from trbdyn.run import estimate
 from trbdyn.run.bias import biases, preset_of
 from trbdyn.run.torque_laws import straight_rollers, torque_laws
 from trbdyn.standards.sheet import life_text
-
-if TYPE_CHECKING:
-    from trbdyn.results.result import Result
 
 GRAVITY: Final = 9.80665
 MIXED_FILM: Final = 1.0

@@ -19,12 +19,12 @@ from trbdyn.errors import InputError
 from trbdyn.model.contact_line import line_length, stations
 from trbdyn.model.motion import value_at
 from trbdyn.model.ratings import rating_iso76, rating_iso281
+from trbdyn.model.scene import Scene
 from trbdyn.standards import iso281, lamina
 from trbdyn.statics.plausible import PERMISSIBLE_PRESSURE
 from trbdyn.statics.start import contacts_at_start
 
 if TYPE_CHECKING:
-    from trbdyn.model.scene import Scene
     from trbdyn.statics.fit import Fit
 
 Array = NDArray[np.float64]

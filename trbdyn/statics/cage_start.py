@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn import _core
 from trbdyn.model.motion import value_at
+from trbdyn.model.scene import Scene
 from trbdyn.statics.ring_motion import RingMotion
 from trbdyn.statics.state_view import StateView
-
-if TYPE_CHECKING:
-    from trbdyn.model.scene import Scene
 
 Array = NDArray[np.float64]
 

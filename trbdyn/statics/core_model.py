@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,9 +17,7 @@ from trbdyn.model.flatten import (
     scene_entries,
 )
 from trbdyn.model.profiles import drop_rows
-
-if TYPE_CHECKING:
-    from trbdyn.model.scene import Scene
+from trbdyn.model.scene import Scene
 
 
 def build_model(scene: Scene, instruction_set: str = "") -> _core.Model:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +14,7 @@ from trbdyn import _core
 from trbdyn.errors import LoadError
 from trbdyn.model.flatten import RingLoad, ring_load
 from trbdyn.model.motion import is_constant, value_at
-
-if TYPE_CHECKING:
-    from trbdyn.model.scene import Scene
+from trbdyn.model.scene import Scene
 
 Array = NDArray[np.float64]
 Near = tuple[Array, Array]

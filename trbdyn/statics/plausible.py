@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -13,10 +13,8 @@ from trbdyn.model.cage_space import CageSpace
 from trbdyn.model.catalogue_rollers import CYLINDRICAL, TAPERED
 from trbdyn.model.defects import DepthMap, Pit
 from trbdyn.model.motion import value_at, values_of
+from trbdyn.model.scene import Scene
 from trbdyn.statics.equilibrium import Equilibrium
-
-if TYPE_CHECKING:
-    from trbdyn.model.scene import Scene
 
 PERMISSIBLE_PRESSURE: Final = 4e9
 """Pressure (Pa) at which the most loaded roller keeps a dent of a ten thousandth of its diameter: ISO 76, roller

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import scipy
@@ -15,13 +15,11 @@ from trbdyn import _core
 from trbdyn.errors import InputError, LoadError
 from trbdyn.model.flatten import HOUSING_LOADS, motion_table, ring_load
 from trbdyn.model.motion import History, is_constant
+from trbdyn.model.scene import Scene
 from trbdyn.model.shaft import angle_turned
 from trbdyn.statics.core_model import normal_contacts
 from trbdyn.statics.equilibrium import Equilibrium, EquilibriumSolver, nominal_angles
 from trbdyn.statics.ring_path import find_path
-
-if TYPE_CHECKING:
-    from trbdyn.model.scene import Scene
 
 Array = NDArray[np.float64]
 

@@ -13,17 +13,15 @@ import bisect
 import itertools
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.errors import InputError, LoadError
 from trbdyn.model.motion import History, is_constant, joint_times, knot_times, values_of
+from trbdyn.model.scene import Scene
 from trbdyn.statics.equilibrium import Equilibrium, EquilibriumSolver
-
-if TYPE_CHECKING:
-    from trbdyn.model.scene import Scene
 
 Array = NDArray[np.float64]
 

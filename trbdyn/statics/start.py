@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 from trbdyn import _core
 from trbdyn.errors import InputError
 from trbdyn.model.motion import value_at
+from trbdyn.model.scene import Scene
 from trbdyn.model.start import Start
 from trbdyn.statics.cage_start import place_cage
 from trbdyn.statics.core_model import build_model
@@ -18,9 +18,6 @@ from trbdyn.statics.equilibrium import Equilibrium, nominal_angles
 from trbdyn.statics.free_ring import axis_of, put_axis
 from trbdyn.statics.ring_motion import RingMotion, ring_motion
 from trbdyn.statics.state_view import StateView
-
-if TYPE_CHECKING:
-    from trbdyn.model.scene import Scene
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,11 +17,9 @@ from trbdyn.errors import InputError
 from trbdyn.model.motion import value_at
 from trbdyn.results.conditions import ranges, spoken
 from trbdyn.results.fields import carrying, contacts
+from trbdyn.results.result import Result
 from trbdyn.run.replay import Replay
 from trbdyn.run.simulation import Simulation
-
-if TYPE_CHECKING:
-    from trbdyn.results.result import Result
 
 Array = NDArray[np.float64]
 

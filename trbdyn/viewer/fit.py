@@ -8,18 +8,16 @@ raceway at every frame; it is found by halving an interval, as more factor alway
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
+from trbdyn.model.bearing import Bearing
 from trbdyn.model.outlines import cup_outline
 from trbdyn.viewer.meshes import Mesh
 from trbdyn.viewer.shapes import Shapes
-
-if TYPE_CHECKING:
-    from trbdyn.model.bearing import Bearing
 
 Array = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ import math
 import os
 import struct
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,15 +18,13 @@ from scipy.spatial.transform import Rotation
 
 from trbdyn.base.own_files import output_path, write_whole
 from trbdyn.errors import InputError
+from trbdyn.model.bearing import Bearing
+from trbdyn.results.result import Result
 from trbdyn.results.sources import files_of
 from trbdyn.viewer.data import Frames, check, default_factor, frames
 from trbdyn.viewer.fit import largest_factor
 from trbdyn.viewer.meshes import Mesh, join
 from trbdyn.viewer.shapes import Shapes, shapes
-
-if TYPE_CHECKING:
-    from trbdyn.model.bearing import Bearing
-    from trbdyn.results.result import Result
 
 Array = NDArray[np.float64]
 

@@ -9,19 +9,17 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from trbdyn.results.result import Result
 from trbdyn.viewer.data import Frames, Quantity, default_factor, facts
 from trbdyn.viewer.fit import largest_factor
 from trbdyn.viewer.library import three_js
 from trbdyn.viewer.meshes import Mesh
 from trbdyn.viewer.shapes import AROUND, Shapes
-
-if TYPE_CHECKING:
-    from trbdyn.results.result import Result
 
 FULL = np.iinfo(np.uint16).max
 MESHES: Final = ("outer", "inner", "roller", "mark", "cage", "land", "guide")

@@ -8,20 +8,17 @@ faces) is drawn in usual proportions. Motion and clearances can be drawn larger 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import ConvexHull
 
 from trbdyn.cage.cage_solid import pocket_axes
+from trbdyn.model.bearing import Bearing
 from trbdyn.model.outlines import cone_outline, cup_outline, rail_bands
+from trbdyn.model.pocket import Face
 from trbdyn.model.profiles import profile_drop
 from trbdyn.viewer.meshes import Mesh, flat_mesh, join, revolve, strip
-
-if TYPE_CHECKING:
-    from trbdyn.model.bearing import Bearing
-    from trbdyn.model.pocket import Face
 
 Array = NDArray[np.float64]
 
