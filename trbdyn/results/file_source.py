@@ -33,6 +33,7 @@ from trbdyn.results.file_format import (
     reason,
     stored_type,
 )
+from trbdyn.results.sources import Source
 
 Array = NDArray[np.float64]
 
@@ -163,7 +164,7 @@ def names_in(path: str | os.PathLike[str]) -> tuple[str, ...]:
     return ("",) if table is None else tuple(table["bearings"])
 
 
-class FileSource:
+class FileSource(Source):
     """Reads the fields of a bearing from a file of `ResultWriter` when they are asked for; the file is open only while reading.
 
     `first_record` is the place of its first record in the run: records before it are missing. `finished` tells whether its

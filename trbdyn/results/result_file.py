@@ -96,7 +96,9 @@ class ResultWriter:
             replaced = take_lock(self.path) if overwrite and self.path.exists() else None
             try:
                 draft, self._lock = create_draft(self.path, uuid.uuid4().hex)
-                self._make_sure_of_room(draft)
+                # a full disk is refused before the first step: a short run is written at its end, and would be lost
+                with self._or_given_up(draft):
+                    self._reserve(self._row_bytes + SPARE_BYTES)
                 _WRITERS.add(self)
                 begin = partial(self._begin, draft, make, taken_over, replace=replaced is not None)
                 if self._second is None or replaced is not None:
@@ -107,11 +109,12 @@ class ResultWriter:
                 if replaced is not None:
                     replaced.close()
 
-    def _make_sure_of_room(self, draft: Path) -> None:
-        """Refuse a disk without room for a record before the first step: a short run is written at its end, and would be lost."""
+    @contextmanager
+    def _or_given_up(self, draft: Path) -> Iterator[None]:
+        """If what is done inside fails, the file is given up and its draft removed."""
         try:
-            self._reserve(self._row_bytes + SPARE_BYTES)
-        except OSError:
+            yield
+        except BaseException:
             self._let_go()
             draft.unlink(missing_ok=True)
             raise
@@ -120,19 +123,14 @@ class ResultWriter:
         self, draft: Path, make: partial[None], taken_over: tuple[Sequence[FileSource], int] | None, *, replace: bool
     ) -> None:
         """Make every object of the file in a draft, which then takes its place."""
-        try:
-            with self._guard("cannot be written"):
-                make(draft)
-                if taken_over is not None:
-                    self._take_over(draft, *taken_over)
-                try:
-                    put_in_place(draft, self.path, replace=replace)
-                except FileExistsError:
-                    raise exists_already(self.path) from None
-        except BaseException:
-            self._let_go()
-            draft.unlink(missing_ok=True)
-            raise
+        with self._or_given_up(draft), self._guard("cannot be written"):
+            make(draft)
+            if taken_over is not None:
+                self._take_over(draft, *taken_over)
+            try:
+                put_in_place(draft, self.path, replace=replace)
+            except FileExistsError:
+                raise exists_already(self.path) from None
 
     def _take_over(self, draft: Path, older: Sequence[FileSource], count: int) -> None:
         """Copy the first records of an older file of the run."""

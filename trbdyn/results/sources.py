@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,50 +15,32 @@ from trbdyn.results.fields import Field
 Array = NDArray[np.float64]
 
 
-class Source(Protocol):
-    """Where a result reads its fields from."""
+class Source:
+    """Where a result reads its fields from: `fields` can be read, in the order of the record, of `n_records` records. What reads
+    from a file says so; others have none.
+    """
 
-    @property
-    def fields(self) -> tuple[Field, ...]:
-        """The fields that can be read, in the order of the record."""
-
-    @property
-    def n_records(self) -> int:
-        """Number of records."""
+    fields: tuple[Field, ...]
+    n_records: int
 
     @property
     def files(self) -> tuple[Path, ...]:
         """The files that it reads from."""
+        return ()
 
     def read(self, name: str) -> Array:
         """All records of one field, time first."""
+        raise NotImplementedError
 
     def moved(self, path: Path) -> None:
         """The file that it reads from has another name now."""
 
     def held_open(self) -> AbstractContextManager[None]:
         """Opens its file once for all that is read inside."""
-
-
-class WithoutFile:
-    """What a source answers that reads from no file."""
-
-    __slots__ = ()
-
-    @property
-    def files(self) -> tuple[Path, ...]:
-        """There are none."""
-        return ()
-
-    def moved(self, path: Path) -> None:
-        """There is no file."""
-
-    def held_open(self) -> AbstractContextManager[None]:
-        """There is nothing to open."""
         return nullcontext()
 
 
-class RecordsSource(WithoutFile):
+class RecordsSource(Source):
     """Fields within pieces of records, each of shape (n, length), in their order; they are kept, and must not change. `places`
     says where each field is in a record: offset and shape.
 
@@ -91,36 +72,29 @@ class RecordsSource(WithoutFile):
         return self._arrays[name]
 
 
-@dataclass(frozen=True, slots=True)
-class WindowSource:
+class WindowSource(Source):
     """Part of another source: some of its fields, and the records from `start` to `stop`."""
 
-    source: Source
-    fields: tuple[Field, ...]
-    start: int
-    stop: int
-
-    @property
-    def n_records(self) -> int:
-        """Number of records."""
-        return self.stop - self.start
+    def __init__(self, source: Source, fields: tuple[Field, ...], start: int, stop: int) -> None:
+        self.fields, self.n_records = fields, stop - start
+        self._source, self._rows = source, slice(start, stop)
 
     def read(self, name: str) -> Array:
         """All records of one field within the window, time first."""
-        return self.source.read(name)[self.start : self.stop]
+        return self._source.read(name)[self._rows]
 
     @property
     def files(self) -> tuple[Path, ...]:
         """The files of the other source."""
-        return self.source.files
+        return self._source.files
 
     def moved(self, path: Path) -> None:
         """The file of the other source has another name now."""
-        self.source.moved(path)
+        self._source.moved(path)
 
     def held_open(self) -> AbstractContextManager[None]:
         """Opens the file of the other source."""
-        return self.source.held_open()
+        return self._source.held_open()
 
 
 def files_of(result: Any) -> list[Path]:

@@ -115,17 +115,7 @@ def note(sim: Simulation) -> str:
     if len(sim.bearings) > 1:
         return ON_A_SHAFT
     options, scene = sim.options, sim.scene
-    tolerances = options.tolerances.model_dump()
-    preset = next(
-        (
-            name
-            for name, one in estimate.table()["presets"].items()
-            if estimate.same_tolerances(tolerances, one["tolerances"])
-        ),
-        None,
-    )
-    if options.integrator != "bdf" or options.max_order != 2:
-        preset = None
+    preset = None if options.integrator != "bdf" or options.max_order != 2 else estimate.preset_like(options)
     found = measured(scene, preset, estimate.axial_of(sim), estimate.whirls(sim))
     if found is None:
         return ""

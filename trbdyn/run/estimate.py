@@ -23,6 +23,7 @@ from trbdyn.run.process import has_a_spare_core
 
 if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
+    from trbdyn.run.options import RunOptions
     from trbdyn.run.simulation import Simulation
 
 TABLE: Final = DATA / "accuracy.json"
@@ -297,13 +298,12 @@ def _errors(sim: Simulation) -> dict[str, Any]:
     known = len(sim.bearings) == 1 and options.integrator == "bdf" and standard and sim.scene.effects.has_cage
     if not known:
         return place | dict.fromkeys(_ERRORS, math.nan) | {"extrapolated": True}
-    tolerances = options.tolerances.model_dump()
-    for preset in measured["presets_of_scenes"].get(case, {}).values():
-        if same_tolerances(tolerances, preset["tolerances"]):
-            bias = preset.get("bias", {})
-            far = {name: _number(bias.get(key)) for name, key in _BIASES.items()}
-            return place | far | {name: _number(preset[name]) for name in _ERRORS} | {"extrapolated": False}
-    scale = _scale(tolerances, measured["base_tolerances"])
+    preset = measured["presets_of_scenes"].get(case, {}).get(preset_like(options))
+    if preset is not None:
+        bias = preset.get("bias", {})
+        far = {name: _number(bias.get(key)) for name, key in _BIASES.items()}
+        return place | far | {name: _number(preset[name]) for name in _ERRORS} | {"extrapolated": False}
+    scale = _scale(options.tolerances.model_dump(), measured["base_tolerances"])
     points = measured["points"][case]
     scales = [point["scale"] for point in points]
     errors = {name: _between(scale, scales, [point[name] for point in points]) for name in _ERRORS}
@@ -368,9 +368,13 @@ def fast_cage(speed: float, spin: float, play: float) -> bool:
     return speed > 0.3 * abs(spin) * play
 
 
-def same_tolerances(one: Mapping[str, float], other: Mapping[str, float]) -> bool:
-    """Whether tolerances are those of a preset."""
-    return bool(other) and all(math.isclose(one[name], value, rel_tol=SAME) for name, value in other.items())
+def preset_like(options: RunOptions) -> str | None:
+    """The measured preset whose tolerances these options have; None for tolerances of one's own."""
+    own = options.tolerances.model_dump()
+    for name, preset in table()["presets"].items():
+        if all(math.isclose(own[entry], value, rel_tol=SAME) for entry, value in preset["tolerances"].items()):
+            return str(name)
+    return None
 
 
 def _scale(tolerances: Mapping[str, float], base: Mapping[str, float]) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any, Final, overload
+from typing import Any, Final, TypedDict, Unpack, overload
 
 import numpy as np
 
@@ -28,48 +28,29 @@ RECORDS: Final = 60
 """Records of a run that are evaluated, at most; evenly spread over its window."""
 
 
-@overload
-def rating(
-    subject: Scene | Result,
-    *,
-    cleanliness: str | None = None,
-    filtered: bool | None = None,
-    contamination: float | None = None,
-    reliability: float = 90.0,
-) -> Rating: ...
+class Oil(TypedDict, total=False):
+    """What `rating` takes beside its subject."""
+
+    cleanliness: str | None
+    filtered: bool | None
+    contamination: float | None
+    reliability: float
 
 
 @overload
-def rating(
-    subject: Assembly | AssemblyResult | ShaftEquilibrium,
-    *,
-    cleanliness: str | None = None,
-    filtered: bool | None = None,
-    contamination: float | None = None,
-    reliability: float = 90.0,
-) -> SystemRating: ...
+def rating(subject: Scene | Result, **oil: Unpack[Oil]) -> Rating: ...
 
 
 @overload
-def rating(
-    subject: Fit,
-    *,
-    cleanliness: str | None = None,
-    filtered: bool | None = None,
-    contamination: float | None = None,
-    reliability: float = 90.0,
-) -> Rating | SystemRating: ...
+def rating(subject: Assembly | AssemblyResult | ShaftEquilibrium, **oil: Unpack[Oil]) -> SystemRating: ...
 
 
 @overload
-def rating(
-    subject: Spectrum,
-    *,
-    cleanliness: str | None = None,
-    filtered: bool | None = None,
-    contamination: float | None = None,
-    reliability: float = 90.0,
-) -> SpectrumRating | SystemRating: ...
+def rating(subject: Fit, **oil: Unpack[Oil]) -> Rating | SystemRating: ...
+
+
+@overload
+def rating(subject: Spectrum, **oil: Unpack[Oil]) -> SpectrumRating | SystemRating: ...
 
 
 def rating(
