@@ -27,7 +27,7 @@ import pytest
 import trbdyn as trb
 from trbdyn.errors import FileError, InputError
 from trbdyn.results import fields as field_table
-from trbdyn.results import file_source, hdf5_file, result_file
+from trbdyn.results import file_source, result_file
 from trbdyn.results.assembly import load
 from trbdyn.results.file_format import BLOCK_ROWS, SCHEMA_VERSION, SINGLE
 from trbdyn.results.file_format import as_kept as kept_in_a_file
@@ -765,8 +765,8 @@ def test_a_summary_opens_the_file_once(tmp_path: Path, monkeypatch: pytest.Monke
     in_memory = trb.Simulation(scene).run(duration=2e-3, save_every=1e-4)
     trb.Simulation(scene).run(duration=2e-3, save_every=1e-4, output=path)
     result, opens = trb.load(path), []
-    ordinary = hdf5_file.open_to_read
-    monkeypatch.setattr(hdf5_file, "open_to_read", lambda place: opens.append(place) or ordinary(place))
+    ordinary = file_source.open_to_read
+    monkeypatch.setattr(file_source, "open_to_read", lambda place: opens.append(place) or ordinary(place))
     found, wanted = result.summary(), in_memory.summary()
     assert len(opens) == 1
     for name in ("torque", "axis_distance_over_cpr", "cage_speed_ratio"):

@@ -147,6 +147,7 @@ READERS = {
     "trbdyn.model.roller.Profile.from_trace",
     "trbdyn.model.trace.read_trace",
     "trbdyn.results.file_source.FileSource",
+    "trbdyn.results.file_source.open_to_read",
     "trbdyn.run.resume.resume",
     "trbdyn.run.toml_assembly.load_assembly",
     "trbdyn.run.toml_case.load_case",

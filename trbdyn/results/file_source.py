@@ -18,9 +18,9 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from trbdyn.base.locks import is_locked
 from trbdyn.base.own_files import file_path
 from trbdyn.errors import FileError
-from trbdyn.results import hdf5_file
 from trbdyn.results import peaks as peak_table
 from trbdyn.results.fields import Field
 from trbdyn.results.file_format import (
@@ -52,12 +52,26 @@ _READ_ERRORS = (
 )
 
 
+def open_to_read(path: Path) -> h5py.File:
+    """A file that is complete, is being written now, or whose writer was killed; an OSError if it cannot be read."""
+    if not is_locked(path):
+        try:
+            return h5py.File(path, "r", locking=False)
+        except OSError as error:
+            # open in this process by others, such as xarray, with locks of their own
+            if "flag values don't match" in str(error):
+                return h5py.File(path, "r")
+            if "already open for" not in str(error):
+                raise
+    return h5py.File(path, "r", swmr=True, locking=False)
+
+
 @contextmanager
 def opened(path: Path, bearing: str = "") -> Iterator[h5py.Group]:
     """A result file, or a bearing's part of one, open to be read; what goes wrong inside is a FileError that names it."""
     if not path.is_file():
         raise FileError(f"{path}: there is no such file")
-    with _said(path), hdf5_file.open_to_read(path) as file:
+    with _said(path), open_to_read(path) as file:
         yield part_of(file, bearing)
 
 
@@ -296,7 +310,7 @@ class FileSource(Source):
             yield
             return
         with _said(self.path):
-            file = hdf5_file.open_to_read(self.path)
+            file = open_to_read(self.path)
         try:
             self._held[me] = part_of(file, self.bearing)
             yield

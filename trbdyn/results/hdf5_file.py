@@ -1,4 +1,4 @@
-"""HDF5 files of a result: how they are made, opened again, and read; `trbdyn.results.file_format` says what they hold.
+"""HDF5 files of a result: how they are made, and records added; `trbdyn.results.file_format` says what they hold.
 
 Datasets and attributes are made through the low interface of h5py: a result has more than a hundred of them, and the usual one
 looks each up by name again, and makes a type for every single value.
@@ -18,7 +18,6 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from trbdyn.base.locks import is_locked
 from trbdyn.base.version import __version__
 from trbdyn.results.chunks import LEVEL, packed
 from trbdyn.results.fields import DIMENSIONS, Field, Layout
@@ -212,17 +211,3 @@ def commit(file: h5py.Group, n_records: int, n_ending: int = 0) -> None:
     file.file.flush()
     # the last number tells it from zeros, whose checksum is zero
     file["run/committed"][:] = (n_records, n_ending, 1)
-
-
-def open_to_read(path: Path) -> h5py.File:
-    """A file that is complete, is being written now, or whose writer was killed; an OSError if it cannot be read."""
-    if not is_locked(path):
-        try:
-            return h5py.File(path, "r", locking=False)
-        except OSError as error:
-            # open in this process by others, such as xarray, with locks of their own
-            if "flag values don't match" in str(error):
-                return h5py.File(path, "r")
-            if "already open for" not in str(error):
-                raise
-    return h5py.File(path, "r", swmr=True, locking=False)
