@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 
 from trbdyn import _core
@@ -76,56 +76,54 @@ def resume(
         notes.append(note)
         warnings.warn(note, UserWarning, stacklevel=3)
 
-    def run_on(older: Sequence[FileSource] | None) -> Result | AssemblyResult:
-        found = checkpoint.read_last_good(output, tell)
-        if older is not None and any(one.run_id != found.run_id for one in older):
-            raise FileError(
-                f"{checkpoint.checkpoint_path(output)}: the checkpoint belongs to another run than {output}"
-            )
-        sim, options = _revived(output, found, instruction_set, tell)
-        every = options.save_every or interval(found.end - found.start, sim.scene.turning_rpm)
-        times = output_times(found.start, found.end, every)
-        if found.done >= times.size:
-            raise FileError(
-                f"{checkpoint.checkpoint_path(output)}: the checkpoint cannot be used: it has too many records"
-            )
-        if older is not None and any(one.first_record + one.n_records < found.done for one in older):
-            raise FileError(f"{output}: the result file holds fewer records than its checkpoint says")
-        run = Run(sim, options, times, callback, found.done)
-        run.spent = found.stepping_s
-        for one in run.bearings:
-            one.notes[:] = notes
-            said = [text for text in found.warnings if text.startswith(one.of.said)]
-            one.doubts[:] = [text.removeprefix(one.of.said) for text in said]
-        run.write_to(output, found.run_id, older=older, overwrite=older is not None)
-        return run.go(progress=progress)
+    is_lost = not output.exists()
+    older = None if is_lost else _records_in(output, tell)
+    if older is not None and older[0].info.success:
+        return load(output)
+    found = checkpoint.read_last_good(output, tell)
+    if is_lost and found.done:
+        tell(f"{output}: there is no such file; its records are lost, those from the checkpoint on will be written")
+    where = checkpoint.checkpoint_path(output)
+    if older is not None and any(one.run_id != found.run_id for one in older):
+        raise FileError(f"{where}: the checkpoint belongs to another run than {output}")
+    sim, options = _revived(output, found, instruction_set, tell)
+    every = options.save_every or interval(found.end - found.start, sim.scene.turning_rpm)
+    times = output_times(found.start, found.end, every)
+    if found.done >= times.size:
+        raise FileError(f"{where}: the checkpoint cannot be used: it has too many records")
+    if older is not None and any(one.first_record + one.n_records < found.done for one in older):
+        raise FileError(f"{output}: the result file holds fewer records than its checkpoint says")
+    run = Run(sim, options, times, callback, found.done)
+    run.spent = found.stepping_s
+    for bearing in run.bearings:
+        bearing.notes[:] = notes
+        said = [text for text in found.warnings if text.startswith(bearing.of.said)]
+        bearing.doubts[:] = [text.removeprefix(bearing.of.said) for text in said]
+    # refused if another process has begun to write a file meanwhile that was not there
+    run.write_to(output, found.run_id, older=older, overwrite=older is not None)
+    return run.go(progress=progress)
 
-    if not output.exists():
-        found = checkpoint.read_last_good(output, lambda note: None)
-        if found.done:
-            tell(f"{output}: there is no such file; its records are lost, those from the checkpoint on will be written")
-        # refused if another process has begun to write the file meanwhile
-        return run_on(None)
-    older: list[FileSource] | None = None
+
+def _records_in(output: Path, tell: Callable[[str], None]) -> list[FileSource] | None:
+    """Each bearing in a result file that no other process writes; None where the file cannot be read: it is moved aside."""
     try:
         take_lock(output).close()
         try:
             older = [FileSource(output, name) for name in names_in(output)]
             for one in older:
                 one.check()
+            return older
         except FileError as error:
-            older, kept = None, ""
+            kept = ""
             if output.stat().st_size:
                 # one that cannot be read may still hold something
                 kept = f"; it is kept as {set_aside(output)}"
             else:
                 output.unlink()
             tell(f"{error}; its records are lost, those from the checkpoint on will be written{kept}")
+            return None
     except OSError as error:
         raise FileError(f"{output}: cannot be resumed: {reason(error)}") from error
-    if older is not None and older[0].info.success:
-        return load(output)
-    return run_on(older)
 
 
 def _revived(
