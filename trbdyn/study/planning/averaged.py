@@ -2,6 +2,9 @@
 
 Averages of several bearings have the names of their bearings before them: ``left_cage_slip``. Torque and power loss without such
 a name are the sums over all bearings.
+
+An error of an average is a share of its value, or of the least value that means anything where it is smaller. An orbit of the
+cage of a hundred-thousandth of its play is no orbit, and six percent of it is no promise that anybody could keep or use.
 """
 
 from __future__ import annotations
@@ -15,6 +18,7 @@ import numpy as np
 
 from trbdyn.errors import InputError
 from trbdyn.results.confidence import AVERAGES, confidence
+from trbdyn.results.fields import contacts
 from trbdyn.results.summary import averages
 from trbdyn.run.until import check_average, groups_for
 
@@ -28,6 +32,34 @@ if TYPE_CHECKING:
 
 SUMS: Final = ("torque", "power_loss")
 """Averages of several bearings that can be added up."""
+LEAST: Final = {
+    "cage_slip": 1e-4,
+    "orbit_": 0.01,
+    "axis_": 0.01,
+    "axial_": 0.01,
+    "whirl_ratio": 0.05,
+    "whirl_coherence": 0.05,
+    "speed_deviation_": 0.05,
+    "tilt_": 1e-5,
+    "lean_": 1e-5,
+    "skew_": 1e-5,
+    "spacing_": 1e-3,
+    "pocket_force_": 0.1,
+    "pocket_duty": 1e-3,
+    **{f"{side}_load_": 0.1 for side in contacts()},
+}
+"""Least value that means anything, by the beginning of the average's name, in the units of the summary; 0 for others."""
+
+
+def least_size(name: str) -> float:
+    """The least value of an average that means anything; 0 where each does."""
+    own = of_bearing(name)[1]
+    return next((size for start, size in LEAST.items() if own.startswith(start)), 0.0)
+
+
+def size_of(name: str, value: float) -> float:
+    """What errors of an average are shares of."""
+    return max(abs(value), least_size(name))
 
 
 def prefixes(subject: Subject) -> tuple[str, ...]:

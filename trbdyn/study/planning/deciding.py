@@ -1,4 +1,4 @@
-"""The choice of a plan: the cheapest set by the errors of its parts, run as a whole; chosen again where the whole is worse."""
+"""The choice of a plan: the cheapest set by the errors of its parts, run as a whole; where the whole is worse, none of it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from trbdyn.study.planning.candidates import TRUE_ACCURACY, TRUE_NODES, USUAL_AC
 from trbdyn.study.planning.choice import Choice, Option, Task, choose
 from trbdyn.study.planning.looking import LEAST_AVERAGING, TRUTH_IN_PROBES, Looker, Seen
 from trbdyn.study.planning.probes import Array, Influence, Probe
-from trbdyn.study.planning.wishes import TOLD_APART, Wishes
+from trbdyn.study.planning.wishes import Wishes
 
 MOST_AVERAGING: Final = 20_000.0
 """Turns of the shaft of the averaging at most."""
@@ -20,13 +20,9 @@ UNSEEN: Final = 0.001
 UNSEEN_SHARE: Final = 0.5
 """What a short probe cannot see: an error of this size, and this share of the errors of model, numerics and settling that it
 sees. Assumed; held against long runs by benchmarks/plan_proof.py."""
-TRIES: Final = 4
-"""Choices that are run as a whole at most; where none is as exact as its parts, the most exact choice is taken."""
 AND: Final = " and "
 USUAL: Final = f"{USUAL_NODES} nodes, tolerances '{USUAL_ACCURACY}'"
 EXACT: Final = f"{TRUE_NODES} nodes, tolerances '{TRUE_ACCURACY}'"
-KEPT: Final = (USUAL, EXACT)
-"""Choices that are never struck out."""
 
 
 @dataclass(frozen=True)
@@ -38,13 +34,15 @@ class Decision:
     made: tuple[Candidate, ...]
     effects: Mapping[str, Any]  # fields of `Effects` that are changed
     accuracy: str  # preset of the tolerances
-    struck: frozenset[str]  # simplifications that made the error of the whole too large
-    task: Task  # what was chosen from
+    rejected: frozenset[str]  # a choice whose error as a whole was too large: its simplifications and its numerics
     unseen: Array  # room for what the probes could not see, over the sizes; part of the bounds of the choice
+    everything: float  # processor time of a run as exact with all effects and the most exact nodes and tolerances (s)
 
 
 def decide(wishes: Wishes, seen: Seen, looker: Looker) -> Decision:
-    """Choose, run the choice as a whole, and choose again where its error is larger than that of its parts."""
+    """Choose, and run the choice as a whole. Where its error is larger than that of its parts, as simplifications act together,
+    nothing is left out, and nodes and tolerances are the most exact ones.
+    """
     ground, wish = seen.ground, wishes.size
     task = Task(
         want=wish,
@@ -56,30 +54,27 @@ def decide(wishes: Wishes, seen: Seen, looker: Looker) -> Decision:
         most=MOST_AVERAGING * wishes.period,
         rate=seen.base.rate,
     )
-    struck = set[str]()
-    for tries in range(TRIES + 1):
-        effects, numbers = _options(wishes, seen, struck)
-        if tries == TRIES or USUAL in struck:
-            effects, numbers = [], [one for one in numbers if one.name == EXACT]
-        choice = choose(task, effects, numbers, wishes.budget)
-        made = _made(choice, seen)
-        changes, accuracy = _settings(choice, made)
-        exact = choice.numerics == EXACT
-        found = seen.truth if exact and not made else looker.probe(changes, accuracy, TRUTH_IN_PROBES if exact else 1.0)
-        whole = errors_of(looker.influences(found, seen.truth), wishes)
-        seen_errors = whole + ground.drift
-        if found.failure or np.any(seen_errors + unseen_of(seen_errors) > np.maximum(choice.bounds, 0.8 * wish)):
-            struck.add(_worst(choice, [*effects, *numbers], wish) or USUAL)
-            continue
-        break
-    unseen = unseen_of(whole + ground.drift)
-    bounds = whole + ground.drift + unseen
+    exact = Option(EXACT, np.zeros(wish.size), seen.truth.rate / seen.base.rate)
+    effects, numbers = _options(wishes, seen)
+    choice = choose(task, effects, [*numbers, exact], wishes.budget)
+    made, changes, accuracy = _settings(choice, seen)
+    exactly = choice.numerics == EXACT
+    found = looker.probe(changes, accuracy, TRUTH_IN_PROBES if exactly else 1.0) if made or not exactly else seen.truth
+    rejected = frozenset[str]()
+    shown = errors_of(looker.influences(found, seen.truth), wishes) + ground.drift
+    if found.failure or np.any(shown + unseen_of(shown) > np.maximum(choice.bounds, 0.8 * wish)):
+        rejected = frozenset({*choice.left_out, *choice.numerics.split(AND)})
+        choice, found, shown = choose(task, [], [exact], wishes.budget), seen.truth, ground.drift
+        made, changes, accuracy = _settings(choice, seen)
+    unseen = unseen_of(shown)
+    bounds = shown + unseen
     errors = bounds + (choice.errors - choice.bounds)
     cost = found.rate * (looker.settle + choice.averaging)
     affordable = wishes.budget is None or cost <= 1.1 * wishes.budget
     within = bool(np.all(errors <= wish * (1.0 + 1e-9))) and affordable
     choice = replace(choice, bounds=bounds, errors=errors, cost=cost, within=within)
-    return Decision(choice, found, made, changes, accuracy, frozenset(struck), task, unseen)
+    everything = choose(task, [], [exact]).cost
+    return Decision(choice, found, made, changes, accuracy, rejected, unseen, everything)
 
 
 def unseen_of(seen: Array) -> Array:
@@ -87,74 +82,43 @@ def unseen_of(seen: Array) -> Array:
     return np.asarray(UNSEEN + UNSEEN_SHARE * seen)
 
 
-def is_hidden(found: Influence, wish: float) -> bool:
-    """Whether chance hides an influence that may matter."""
-    return found.half_width > TOLD_APART * wish and abs(found.change) <= found.half_width
-
-
 def errors_of(found: Mapping[str, Influence], wishes: Wishes) -> Array:
-    """Bounds of errors; where chance hides a small one, the difference that was seen counts alone, and that is said."""
-    return np.array(
-        [
-            abs(found[name].change) if is_hidden(found[name], wish) else found[name].bound
-            for name, wish in wishes.want.items()
-        ]
-    )
+    """Bounds of errors, in the order of the wishes."""
+    return np.array([found[name].bound for name in wishes.names])
 
 
-def _worst(choice: Choice, options: list[Option], wish: Array) -> str:
-    """The simplification of a choice with the largest error over its wish; empty if there is none."""
-    made = [one for one in options if one.name in (*choice.left_out, choice.numerics) and one.name not in KEPT]
-    return max(made, key=lambda one: float(np.max(one.bounds / wish))).name if made else ""
+def _options(wishes: Wishes, seen: Seen) -> tuple[list[Option], list[Option]]:
+    """Effects that may be left out, and choices of nodes and tolerances, with their share of the room for what probes cannot
+    see.
+    """
 
+    def option(name: str, bounds: Array, time_ratio: float) -> Option:
+        return Option(name, (1.0 + UNSEEN_SHARE) * bounds, time_ratio)
 
-def _options(wishes: Wishes, seen: Seen, struck: set[str]) -> tuple[list[Option], list[Option]]:
-    """Effects that may be left out, and choices of nodes and tolerances."""
-
-    def of(name: str) -> Option:
-        bounds = np.array([seen.alone[name][wanted].bound for wanted in wishes.names])
-        return Option(name, bounds, seen.probes[name].rate / seen.base.rate)
-
-    def fine(name: str) -> bool:
-        found, fits = seen.probes[name], all(seen.alone[name][w].bound <= wish for w, wish in wishes.want.items())
-        return fits and name not in struck and not found.failure and not seen.new_warning(name)
-
-    def of_kind(*kinds: str) -> list[Option]:
-        return [of(one.name) for one in seen.candidates if one.kind in kinds and fine(one.name)]
-
-    effects = [one for one in of_kind("effect") if one.time_ratio < 1.0 - seen.least_saving]
+    tried: dict[str, list[tuple[str, Array, float]]] = {"effect": [], "nodes": [], "tolerances": [], "as given": []}
+    for one in seen.tried:
+        bounds = errors_of(one.change, wishes)
+        if np.all(bounds <= wishes.size) and not one.probe.failure:
+            tried[one.candidate.kind].append((one.candidate.name, bounds, one.time_ratio))
     error = errors_of(seen.usual_error, wishes)
-    own = [
-        Option(USUAL, error, 1.0),
-        *(replace(one, bounds=one.bounds + error) for one in of_kind("nodes", "as given")),
+    own = [(USUAL, error, 1.0)]
+    own += [(name, bounds + error, ratio) for name, bounds, ratio in tried["nodes"] + tried["as given"]]
+    own += [
+        (f"{name}{AND}{other}", bounds + more, ratio * faster)
+        for name, bounds, ratio in own
+        for other, more, faster in tried["tolerances"]
     ]
-    both = [
-        Option(f"{one.name}{AND}{other.name}", one.bounds + other.bounds, one.time_ratio * other.time_ratio)
-        for one in own
-        for other in of_kind("tolerances")
-    ]
-    exact = Option(EXACT, np.zeros(wishes.size.size), seen.truth.rate / seen.base.rate)
-    fitting = [one for one in [*own, *both] if one.name not in struck] + [exact]
-    return [_with_room(one) for one in effects], [_with_room(one) for one in fitting]
+    effects = [option(*one) for one in tried["effect"] if one[2] < 1.0 - seen.least_saving]
+    return effects, [option(*one) for one in own]
 
 
-def _with_room(one: Option) -> Option:
-    """An option with its share of the room for what probes cannot see."""
-    return replace(one, bounds=(1.0 + UNSEEN_SHARE) * one.bounds)
-
-
-def _made(choice: Choice, seen: Seen) -> tuple[Candidate, ...]:
+def _settings(choice: Choice, seen: Seen) -> tuple[tuple[Candidate, ...], dict[str, Any], str]:
+    """The candidates of a choice, fields of effects, and the preset of the tolerances."""
     names = {*choice.left_out, *choice.numerics.split(AND)}
-    return tuple(one for one in seen.candidates if one.name in names)
-
-
-def _settings(choice: Choice, made: tuple[Candidate, ...]) -> tuple[dict[str, Any], str]:
-    """Fields of effects, and the preset of the tolerances."""
-    if choice.numerics == EXACT:
-        changes, accuracy = numerics(TRUE_NODES), TRUE_ACCURACY
-    else:
-        changes, accuracy = numerics(USUAL_NODES), USUAL_ACCURACY
+    made = tuple(one.candidate for one in seen.tried if one.candidate.name in names)
+    exact = choice.numerics == EXACT
+    changes, accuracy = numerics(TRUE_NODES if exact else USUAL_NODES), TRUE_ACCURACY if exact else USUAL_ACCURACY
     for one in made:
         changes |= one.effects
         accuracy = one.accuracy if one.kind == "tolerances" else accuracy
-    return changes, accuracy
+    return made, changes, accuracy

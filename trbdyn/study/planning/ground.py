@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from trbdyn.errors import InputError, StepError
-from trbdyn.study.planning.averaged import Records, of_bearing
+from trbdyn.study.planning.averaged import Records, least_size, of_bearing, size_of
 from trbdyn.study.planning.candidates import USUAL_ACCURACY
 from trbdyn.study.planning.probes import BATCHES, TOO_LONG, Array, Length, in_batches, number_in, run_quietly
-from trbdyn.study.planning.sizes import least_size, size_of
 
 if TYPE_CHECKING:
     from trbdyn.model.assembly import Subject
@@ -43,7 +42,7 @@ class Ground:
 
     start: Start  # the state at its end
     value: dict[str, float]  # the averages over its settled part
-    size: dict[str, float]  # what their errors are shares of (`trbdyn.study.planning.sizes`)
+    size: dict[str, float]  # what their errors are shares of (`trbdyn.study.planning.averaged`)
     scatter: Array  # half widths of their confidence intervals over their sizes, shape (W,)
     drift: Array  # what they may still change by, over their sizes, shape (W,)
     window: float  # length of the settled part (s)

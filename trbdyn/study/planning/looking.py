@@ -13,7 +13,7 @@ import numpy as np
 from trbdyn.errors import InputError, LoadError, StepError
 from trbdyn.model.assembly import ShaftBearing
 from trbdyn.model.scene import Scene, Start
-from trbdyn.study.planning.averaged import groups_of
+from trbdyn.study.planning.averaged import groups_of, least_size
 from trbdyn.study.planning.candidates import (
     TRUE_ACCURACY,
     TRUE_NODES,
@@ -26,7 +26,6 @@ from trbdyn.study.planning.candidates import (
 from trbdyn.study.planning.ground import LEAST_RECORDS, Ground, run_ground
 from trbdyn.study.planning.probes import PATIENCE, TRANSIENT, Influence, Length, Probe, influence, probe
 from trbdyn.study.planning.proposal import Row, words
-from trbdyn.study.planning.sizes import least_size
 from trbdyn.study.planning.wishes import Wishes, changed, with_effects
 
 OF_GROUND: Final = 0.25
@@ -50,6 +49,16 @@ LEAST_SAVING: Final = 0.03
 """Share of the computing time that a simplification must save; more where two runs of one probe took times that differ more."""
 
 
+@dataclass(frozen=True)
+class Tried:
+    """A candidate alone."""
+
+    candidate: Candidate
+    probe: Probe
+    change: dict[str, Influence]  # against the usual nodes and tolerances, by average
+    time_ratio: float  # computing time with it over that without it
+
+
 @dataclass
 class Seen:
     """What the runs of a plan have shown."""
@@ -57,18 +66,11 @@ class Seen:
     ground: Ground
     base: Probe  # with all effects, the usual nodes and tolerances
     truth: Probe  # the same, and the most exact ones
-    candidates: list[Candidate]  # what may be simplified
-    probes: dict[str, Probe]  # of each candidate alone, by its name
+    tried: list[Tried]  # what may be simplified
     usual_error: dict[str, Influence]  # the usual against the most exact, by average
-    alone: dict[str, dict[str, Influence]]  # of each candidate against the usual, by its name
     least_saving: float  # share of the time that a simplification must save to be seen
     rows: list[Row] = field(default_factory=list)  # what was looked at beside the candidates
     notes: list[str] = field(default_factory=list)  # where the answer could be wrong
-
-    def new_warning(self, name: str) -> str:
-        """What the watch said of a candidate's run, where it said nothing of the run with everything; else empty."""
-        warned = self.probes[name].warned
-        return warned[0] if warned and not self.base.warned else ""
 
 
 class Looker:
@@ -175,16 +177,18 @@ class Looker:
         base = self._usable("usual", self.probe({}, USUAL_ACCURACY, PATIENCE))
         self.length = replace(self.length, steps=PATIENCE * base.steps)
         truth = self._usable("most exact", self.probe(numerics(TRUE_NODES), TRUE_ACCURACY, 2.0 * TRUTH_IN_PROBES))
-        probes = {one.name: self._alone(one) for one in found}
+        probes = [self._alone(one) for one in found]
         again = self._usable("second usual", self.probe({}, USUAL_ACCURACY))
+        rate = 0.5 * (base.rate + again.rate)
         return Seen(
             ground=self.ground,
-            base=replace(base, rate=0.5 * (base.rate + again.rate)),
+            base=replace(base, rate=rate),
             truth=truth,
-            candidates=found,
-            probes=probes,
+            tried=[
+                Tried(one, probe, self.influences(probe, base), probe.rate / rate)
+                for one, probe in zip(found, probes, strict=True)
+            ],
             usual_error=self.influences(base, truth),
-            alone={name: self.influences(one, base) for name, one in probes.items()},
             least_saving=max(LEAST_SAVING, abs(again.rate / base.rate - 1.0)),
         )
 

@@ -5,7 +5,7 @@ bearing is another question. A first run of it tells how long the motion takes t
 each simplification, alone, runs from the state that the first run has reached (`trbdyn.study.planning.probes`): what it changes,
 and what it saves. The cheapest set whose errors add up to less than the wish is chosen (`trbdyn.study.planning.choice`), and it
 is run once more as a whole against the most exact probe, since simplifications may act together. Where that shows a larger error
-than promised, the simplification with the largest error of its own is struck out, and the choice is made again.
+than promised, nothing is left out.
 
 The run that is proposed starts from the same state. From the start of the scene a simplified model may go elsewhere: without
 gravity a cage that begins in the middle stays there, where it is not stable, and what planar motion holds stays where it began.
@@ -18,16 +18,13 @@ import time as clock
 from collections.abc import Mapping
 from typing import Final
 
-import numpy as np
-
 from trbdyn.base.expected import expect
 from trbdyn.model.assembly import Assembly, Subject
 from trbdyn.model.scene import Scene
-from trbdyn.study.planning.candidates import TRUE_ACCURACY, TRUE_NODES, Candidate
-from trbdyn.study.planning.choice import Option, choose
-from trbdyn.study.planning.deciding import EXACT, USUAL, Decision, decide, is_hidden
-from trbdyn.study.planning.looking import Looker, Seen
-from trbdyn.study.planning.proposal import Plan, Row, words
+from trbdyn.study.planning.candidates import TRUE_ACCURACY, TRUE_NODES
+from trbdyn.study.planning.deciding import EXACT, USUAL, Decision, decide
+from trbdyn.study.planning.looking import Looker, Seen, Tried
+from trbdyn.study.planning.proposal import Plan, Row
 from trbdyn.study.planning.wishes import Wishes, changed, checked
 
 EFFORT: Final = 15.0
@@ -81,14 +78,12 @@ def plan(scene: Subject, want: Mapping[str, float], *, budget: float | None = No
     looker = Looker(wishes)
     seen = looker.look()
     decision = decide(wishes, seen, looker)
-    notes = [*seen.notes, *_notes(wishes, seen, decision, looker)]
-    return _proposal(wishes, seen, decision, looker, notes, began)
+    return _proposal(wishes, seen, decision, looker, began)
 
 
-def _proposal(wishes: Wishes, seen: Seen, decision: Decision, looker: Looker, notes: list[str], began: float) -> Plan:
+def _proposal(wishes: Wishes, seen: Seen, decision: Decision, looker: Looker, began: float) -> Plan:
     ground, choice = seen.ground, decision.choice
-    given = next((seen.probes[one.name].rate for one in seen.candidates if one.kind == "as given"), seen.base.rate)
-    exact = choose(decision.task, [], [Option(EXACT, np.zeros(wishes.size.size), seen.truth.rate / seen.base.rate)])
+    given = next((one.probe.rate for one in seen.tried if one.candidate.kind == "as given"), seen.base.rate)
     length = looker.settle + choice.averaging
     settling, statistics, unseen = ground.drift, choice.errors - choice.bounds, decision.unseen
     parts = {
@@ -100,11 +95,6 @@ def _proposal(wishes: Wishes, seen: Seen, decision: Decision, looker: Looker, no
         }
         for k, name in enumerate(wishes.names)
     }
-    rows = [
-        *seen.rows,
-        _row_of_the_usual(seen, decision),
-        *(_row(one, wishes, seen, decision) for one in seen.candidates),
-    ]
     return Plan(
         scene=changed(looker.usual, decision.effects, ground.start),
         accuracy=decision.accuracy,
@@ -118,28 +108,23 @@ def _proposal(wishes: Wishes, seen: Seen, decision: Decision, looker: Looker, no
         value=dict(ground.value),
         size=dict(ground.size),
         reached=choice.within,
-        rows=tuple(rows),
+        rows=(
+            *seen.rows,
+            _row_of_the_usual(seen, decision),
+            *(_row(one, wishes, seen, decision) for one in seen.tried),
+        ),
         computing_s=choice.cost,
-        computing_s_everything=exact.cost,
+        computing_s_everything=decision.everything,
         computing_s_given=given * length if math.isfinite(given) else math.nan,
         spent_s=clock.process_time() - began,
         budget=wishes.budget,
-        warnings=tuple(dict.fromkeys(notes)),
+        warnings=tuple(dict.fromkeys([*seen.notes, *_notes(seen, decision, looker)])),
     )
 
 
-def _notes(wishes: Wishes, seen: Seen, decision: Decision, looker: Looker) -> list[str]:
+def _notes(seen: Seen, decision: Decision, looker: Looker) -> list[str]:
     """What the runs could not show."""
-    notes = []
-    for name, one in looker.influences(decision.found, seen.truth).items():
-        if is_hidden(one, wishes.want[name]):
-            notes.append(
-                f"the error of model and numerics in {name} is hidden by chance: {words(one)}, as the motions of two probes "
-                "part; the promise counts what was seen. What could not be told apart is kept; more effort tells more"
-            )
-        elif one.moving:
-            notes.append(f"the influence of the choice on {name} still changed at the end of the probes")
-    notes += [f"in the probe of the choice: {text}" for text in decision.found.warned]
+    notes = [f"in the probe of the choice: {text}" for text in decision.found.warned]
     follow, creep_time = looker.length.duration, seen.ground.creep_time
     if not creep_time <= follow:
         creep = "an unknown time" if math.isnan(creep_time) else f"{creep_time:.2g} s"
@@ -157,31 +142,29 @@ def _row_of_the_usual(seen: Seen, decision: Decision) -> Row:
     return Row(name, "truth", seen.usual_error, seen.base.rate / seen.truth.rate, said, numbers == USUAL)
 
 
-def _row(one: Candidate, wishes: Wishes, seen: Seen, decision: Decision) -> Row:
-    found = seen.probes[one.name]
-    ratio = found.rate / seen.base.rate if not found.failure else math.nan
-    said = _said(one, wishes, seen, decision, ratio)
-    return Row(one.name, one.kind, seen.alone[one.name], ratio, said, one in decision.made)
+def _row(one: Tried, wishes: Wishes, seen: Seen, decision: Decision) -> Row:
+    ratio = math.nan if one.probe.failure else one.time_ratio
+    chosen = one.candidate in decision.made
+    said = _said(one, wishes, seen, decision)
+    return Row(one.candidate.name, one.candidate.kind, one.change, ratio, said, chosen)
 
 
-def _said(one: Candidate, wishes: Wishes, seen: Seen, decision: Decision, ratio: float) -> str:
+def _said(one: Tried, wishes: Wishes, seen: Seen, decision: Decision) -> str:
     """What the plan does with a candidate, and why."""
-    found, alone = seen.probes[one.name], seen.alone[one.name]
-    told = [name for name in wishes.names if abs(alone[name].change) > alone[name].half_width]
-    if found.failure:
-        return f"cannot be run: {found.failure}"
-    taken, kept = ("left out", "kept") if one.kind == "effect" else ("taken", "not taken")
-    if one in decision.made:
+    if one.probe.failure:
+        return f"cannot be run: {one.probe.failure}"
+    is_effect = one.candidate.kind == "effect"
+    taken, kept = ("left out", "kept") if is_effect else ("taken", "not taken")
+    if one.candidate in decision.made:
         return taken
-    large = [name for name, wish in wishes.want.items() if alone[name].bound > wish]
-    if set(large) & set(told):
-        return f"{kept}: it matters for {', '.join(name for name in large if name in told)}"
+    large = [name for name, wish in wishes.want.items() if one.change[name].bound > wish]
+    told = [name for name in large if abs(one.change[name].change) > one.change[name].half_width]
+    if told:
+        return f"{kept}: it matters for {', '.join(told)}"
     if large:
         return f"{kept}: not told apart from chance in {', '.join(large)}"
-    if seen.new_warning(one.name):
-        return f"{kept}: its run warned: {seen.new_warning(one.name)}"
-    if one.name in decision.struck:
+    if one.candidate.name in decision.rejected:
         return f"{kept}: together with the others the error was larger than the wish"
-    if one.kind == "effect" and ratio >= 1.0 - seen.least_saving:
+    if is_effect and one.time_ratio >= 1.0 - seen.least_saving:
         return f"{kept}: it saves no time"
     return f"{kept}: another choice is cheaper"

@@ -180,22 +180,18 @@ def number_in(averages: Mapping[str, Any], name: str) -> float:
 
 @dataclass(frozen=True)
 class Influence:
-    """What a change does to an average, over its size (`trbdyn.study.planning.sizes`).
+    """What a change does to an average, over its size (`trbdyn.study.planning.averaged`).
 
     Attributes
     ----------
     change : float
-        Mean relative difference; nan where it cannot be told.
+        Mean relative difference; nan where it cannot be told, as it still drifts at the end of the probes.
     half_width : float
         Half width of its 95 % confidence interval.
-    moving : bool
-        Whether the difference still drifts from batch to batch, so that it is not known where it ends. The bound is then twice
-        the largest one seen.
     """
 
     change: float
     half_width: float
-    moving: bool = False
 
     @property
     def bound(self) -> float:
@@ -205,13 +201,9 @@ class Influence:
 
 def influence(other: Probe, base: Probe, scale: Mapping[str, float], name: str) -> Influence:
     """Influence of what differs between two probes on an average, over its size."""
+    unknown = Influence(math.nan, math.nan)
     if other.failure or base.failure or scale[name] == 0.0:
-        return Influence(math.nan, math.nan)
+        return unknown
     difference = (other.batches[name] - base.batches[name]) / abs(scale[name])
-    if not np.isfinite(difference).all():
-        return Influence(math.nan, math.nan)
-    change, half_width = float(difference.mean()), observables.half_width(difference)
-    if math.isfinite(half_width):
-        return Influence(change, half_width)
-    largest = float(np.abs(difference).max())
-    return Influence(change, 2.0 * largest - abs(change), moving=True)
+    half_width = observables.half_width(difference) if np.isfinite(difference).all() else math.nan
+    return Influence(float(difference.mean()), half_width) if math.isfinite(half_width) else unknown

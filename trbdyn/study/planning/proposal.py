@@ -223,8 +223,7 @@ def words(found: Influence | None) -> str:
     """An influence in percent."""
     if found is None or not math.isfinite(found.change):
         return "-"
-    mark = ", still moving" if found.moving else ""
-    return f"{_digits(found.change, '+')} ± {_digits(found.half_width)} %{mark}"
+    return f"{_digits(found.change, '+')} ± {_digits(found.half_width)} %"
 
 
 def _digits(share: float, sign: str = "") -> str:

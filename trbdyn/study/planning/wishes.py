@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,9 +17,6 @@ from trbdyn.study.planning.probes import Array, carried_over
 
 if TYPE_CHECKING:
     from trbdyn.model.assembly import Subject
-
-TOLD_APART: Final = 0.3
-"""Half width of an influence over the wish, up to which it counts as told apart from chance."""
 
 
 @dataclass(frozen=True)
