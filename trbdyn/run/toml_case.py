@@ -144,7 +144,7 @@ def bearing_from_table(table: Table) -> Bearing:
     if "named" in table:
         with located(path):
             base = Bearing.named(table["named"]).inputs()
-    values = _merged(base, without(table, "case", "named"))
+    values = merged(base, without(table, "case", "named"))
     values = _with_traces(values, table, path)
     cage, own = values.get("cage"), _at(table, "cage")
     if isinstance(cage, dict) and _is_to_be_read(own.get("drawing")):
@@ -182,7 +182,7 @@ def _with_traces(values: Table, table: Table, path: FieldPath) -> Table:
         check_names(own, {"trace", *_TRACE}, (*path, *inside, name))
         with located((*path, *inside, name)):
             profile = Profile.from_trace(own["trace"], length, **without(own, "trace"))
-        values = _merged(values, {"roller": {name: profile}} if inside else {name: profile})
+        values = merged(values, {"roller": {name: profile}} if inside else {name: profile})
     return values
 
 
@@ -260,7 +260,7 @@ def effects_from_table(table: Table) -> Effects:
     path = ("effects",)
     check_names(table, {*Effects.model_fields, "preset"}, path)
     preset = _choose({"preset": "standard", **table}, "preset", PRESETS, path)
-    values = _merged(preset().to_dict(), without(table, "preset"))
+    values = merged(preset().to_dict(), without(table, "preset"))
     if not table.keys() >= Effects.model_fields.keys():  # a whole table has the coefficients of every law
         with located(path):
             refuse_idle(values["damping"], values["lubrication"], table)
@@ -316,10 +316,10 @@ def without(table: Table, *names: str) -> Table:
     return {key: value for key, value in table.items() if key not in names}
 
 
-def _merged(base: Table, changes: Mapping[str, Any]) -> Table:
+def merged(base: Table, changes: Mapping[str, Any]) -> Table:
     """A table with the values of another put in, table by table."""
     result = dict(base)
     for key, value in changes.items():
         own = result.get(key)
-        result[key] = _merged(own, value) if isinstance(own, dict) and isinstance(value, dict) else value
+        result[key] = merged(own, value) if isinstance(own, dict) and isinstance(value, dict) else value
     return result

@@ -10,13 +10,11 @@ import numpy as np
 
 from trbdyn.base.expected import expect
 from trbdyn.base.shown import Shown
-from trbdyn.base.validation import number_of
-from trbdyn.errors import InputError
 from trbdyn.model.scene import Scene
 from trbdyn.run.options import RunOptions
 from trbdyn.study.answer import Answer
 from trbdyn.study.runner import Running
-from trbdyn.study.whirl import TURNS, CageRuns, speeds_of
+from trbdyn.study.whirl import TURNS, CageRuns, numbers_of, speeds_of
 
 if TYPE_CHECKING:
     import xarray
@@ -125,7 +123,7 @@ def cage_map(
     'stable'
     """
     expect("scene", scene, Scene)
-    turning, loads = speeds_of(speeds), _loads(axial_loads)
+    turning, loads = speeds_of(speeds), sorted(numbers_of("axial_loads", axial_loads, "N"))
     runs = CageRuns(scene, starts, options, longest, how)
     points = [(start, speed, load) for start in runs.starts for load in loads for speed in turning]
     runs.add(points)
@@ -135,12 +133,3 @@ def cage_map(
         "speed_rpm": ("speed_rpm", turning, {"units": "rpm"}),
     }
     return CageMap(runs.dataset(points, places))
-
-
-def _loads(loads: Any) -> list[float]:
-    if isinstance(loads, str) or not isinstance(loads, Sequence | np.ndarray) or not len(loads):
-        raise InputError.of("axial_loads", loads, "must be a sequence of at least one number (N)")
-    found = sorted({number_of("axial_loads", load) for load in loads})
-    if not all(np.isfinite(found)):
-        raise InputError.of("axial_loads", loads, "must be finite (N)")
-    return found

@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final, Unpack
 
 import numpy as np
@@ -191,22 +192,17 @@ def least_load(
         row = {name: float(found[name]) for name in observed}
         return {**row, "settled": row["moves"] <= STEADY}
 
-    observed = {name: _Observed(name) for name in (*NUMBERS, "moves")}
+    observed = {name: partial(number_of_worst, name) for name in (*NUMBERS, "moves")}
     unknown = dict.fromkeys(observed, math.nan)
     rows = run_until_settled(range(len(points)), TURNS, case, judged, observed, how, unknown)
     found = _gathered(points, [rows[point] for point in range(len(points))], slip)
     return LeastLoad(found, float(slip), max(map(_rule, points.bearings)))
 
 
-@dataclass(frozen=True)
-class _Observed:
+def number_of_worst(name: str, result: Result | AssemblyResult) -> float:
     """A number of a result, of several bearings that of the one whose rollers slip most."""
-
-    name: str
-
-    def __call__(self, result: Result | AssemblyResult) -> float:
-        worst = max(result.parts, key=lambda part: float(_half(part)["cage_slip"].mean()))
-        return numbers_of(worst)[self.name]
+    worst = max(result.parts, key=lambda part: float(_half(part)["cage_slip"].mean()))
+    return numbers_of(worst)[name]
 
 
 def _half(result: Result) -> dict[str, Array]:

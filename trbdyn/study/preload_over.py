@@ -173,41 +173,34 @@ class PreloadOver(Answer):
 
     def _shown(self) -> Shown:
         first = self.rows[0]
-        names = [name for row in self.rows for name in row.sheets] or list(first.temperatures)
-        names = list(dict.fromkeys(names))
-        head = (
-            "outside C" if self.outside else "C",
-            *(["inner rings C", "outer rings C"] if self.outside else []),
-            *(f"{name or 'clearance'} um" for name in first.plays),
-            *(f"{name} Fa N".strip() for name in names),
-            "torque N m",
-            "L10h h",
-            "Lnmrh h",
-            "axial N/um",
-            *(["feedback"] if self.outside else []),
-        )
-        rows = []
-        for row in self.rows:
-            warm = list(row.temperatures.values())
-            rows.append(
-                (
-                    f"{row.temperature_c:.4g}",
-                    *(
-                        [_range(one.inner_ring_c for one in warm), _range(one.outer_ring_c for one in warm)]
-                        if self.outside
-                        else []
-                    ),
-                    *(f"{1e6 * play:.1f}" for play in row.plays.values()),
-                    *(f"{row.sheets[name].axial_load:.4g}" if name in row.sheets else "-" for name in names),
-                    _digits(row.torque),
-                    life_text(row.life_hours),
-                    life_text(row.modified_reference_life_hours),
-                    _digits(None if row.axial_stiffness is None else 1e-6 * row.axial_stiffness),
-                    *([_digits(row.feedback)] if self.outside else []),
-                )
-            )
+        names = dict.fromkeys(name for row in self.rows for name in row.sheets) or first.temperatures
+
+        def warm(ring: str) -> Callable[[AtTemperature], str]:
+            return lambda row: _range(getattr(one, ring) for one in row.temperatures.values())
+
+        def play(name: str) -> Callable[[AtTemperature], str]:
+            return lambda row: f"{1e6 * row.plays[name]:.1f}"
+
+        def load(name: str) -> Callable[[AtTemperature], str]:
+            return lambda row: f"{row.sheets[name].axial_load:.4g}" if name in row.sheets else "-"
+
+        columns: dict[str, Callable[[AtTemperature], str]] = {
+            "outside C" if self.outside else "C": lambda row: f"{row.temperature_c:.4g}",
+            "inner rings C": warm("inner_ring_c"),
+            "outer rings C": warm("outer_ring_c"),
+            **{f"{name or 'clearance'} um": play(name) for name in first.plays},
+            **{f"{name} Fa N".strip(): load(name) for name in names},
+            "torque N m": lambda row: _digits(row.torque),
+            "L10h h": lambda row: life_text(row.life_hours),
+            "Lnmrh h": lambda row: life_text(row.modified_reference_life_hours),
+            "axial N/um": lambda row: _digits(None if row.axial_stiffness is None else 1e-6 * row.axial_stiffness),
+            "feedback": lambda row: _digits(row.feedback),
+        }
+        for name in () if self.outside else ("inner rings C", "outer rings C", "feedback"):
+            del columns[name]
+        rows = tuple(tuple(cell(row) for cell in columns.values()) for row in self.rows)
         gaps = dict.fromkeys(f"{row.temperature_c:.4g} C: {row.said}" for row in self.rows if row.said)
-        return Shown(f"Preload over temperature: {self.title}", tuple(rows), head, (*self.warnings, *gaps, NOTE))
+        return Shown(f"Preload over temperature: {self.title}", rows, tuple(columns), (*self.warnings, *gaps, NOTE))
 
 
 NOTE: Final = (

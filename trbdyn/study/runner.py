@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import pickle
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import closing
 from datetime import UTC, datetime
 from pathlib import Path
@@ -108,10 +108,11 @@ def run(
     waiting = {case.fingerprint: case for case in study.cases}
     if resume:
         waiting = {key: case for key, case in waiting.items() if not index.done(key)}
-    for case in _unbuilt(waiting):
+    unbuilt = [case for case in waiting.values() if case.scene is None]
+    for case in unbuilt:
         index.add(_entry(case, Report("failed", case.error)))
     tasks = [_task(case, place, functions) for case in waiting.values() if case.scene is not None]
-    failed = sum(case.scene is None for case in waiting.values())
+    failed = len(unbuilt)
     with (
         _bar(len(study.cases), len(study.cases) - len(tasks), progress) as bar,
         closing(execute(run_case, tasks, executor, workers)) as outcomes,
@@ -161,10 +162,6 @@ def _bar(total: int, done: int, show: bool) -> Any:
     return tqdm(total=total, initial=done, disable=not show, unit="case")
 
 
-def _unbuilt(waiting: Mapping[str, Case]) -> Iterator[Case]:
-    return (case for case in waiting.values() if case.scene is None)
-
-
 def _task(case: Case, folder: Path | None, functions: Mapping[str, Observable]) -> Task:
     if case.scene is None:
         raise InputError.of("case", case.name, case.error)
@@ -180,7 +177,6 @@ def _report(outcome: Outcome[Task]) -> Report:
 
 
 def _entry(case: Case, report: Report) -> Entry:
-
     return Entry(
         name=case.name,
         fingerprint=case.fingerprint,

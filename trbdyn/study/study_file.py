@@ -8,6 +8,7 @@ from typing import Final
 from trbdyn.base.own_files import file_path
 from trbdyn.base.shipped import DATA
 from trbdyn.errors import InputError
+from trbdyn.run.toml_case import merged
 from trbdyn.study.definition import Study, Table, read_toml
 from trbdyn.study.design import cases, grid, random
 
@@ -70,7 +71,7 @@ def _study(path: str | FilePath, table: Table, values: Table) -> Study:
     tables = read_toml(_beside(path, table["case"])) if "case" in table else {}
     for key, entry in values.items():
         own = tables.get(key)
-        tables[key] = _merged(own, entry) if isinstance(own, dict) and isinstance(entry, dict) else entry
+        tables[key] = merged(own, entry) if isinstance(own, dict) and isinstance(entry, dict) else entry
     name = table.get("name", FilePath(path).stem)
     if "grid" in table:
         return grid(tables, table["grid"], name=name)
@@ -86,11 +87,3 @@ def _beside(path: str | FilePath, case: str) -> str | FilePath:
     """A case's file beside the study's, or the name of a shipped case."""
     beside = FilePath(path).parent / case
     return beside if beside.is_file() else case
-
-
-def _merged(base: Table, changes: Table) -> Table:
-    result = dict(base)
-    for key, value in changes.items():
-        own = result.get(key)
-        result[key] = _merged(own, value) if isinstance(own, dict) and isinstance(value, dict) else value
-    return result

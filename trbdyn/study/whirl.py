@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final, Literal, Unpack
 
 import numpy as np
@@ -27,6 +28,7 @@ from trbdyn.run.options import RunOptions
 from trbdyn.study.definition import Case
 from trbdyn.study.runner import Running
 from trbdyn.study.settled import run_until_settled, variables
+from trbdyn.study.work import Observable
 
 if TYPE_CHECKING:
     import xarray
@@ -63,9 +65,9 @@ def _quarter(result: Result, number: int) -> Result:
     return result.window(start + number * step, start + (number + 1) * step)
 
 
-def _kind(result: Result | AssemblyResult, number: int) -> float:
-    """Class of the motion in a quarter of a run. Of several cages: unknown if that of one is, else of those that move most: one
-    that whirls, one that moves without order, one that rocks.
+def kind_in(number: int, result: Result | AssemblyResult) -> float:
+    """Class of the motion in a quarter of a run, as a place in `KINDS`. Of several cages: unknown if that of one is, else of
+    those that move most: one that whirls, one that moves without order, one that rocks.
     """
     kinds = {_quarter(one, number).cage_motion.kind for one in result.parts}
     return float(
@@ -73,28 +75,9 @@ def _kind(result: Result | AssemblyResult, number: int) -> float:
     )
 
 
-def _orbit(result: Result | AssemblyResult, number: int) -> float:
+def orbit_in(number: int, result: Result | AssemblyResult) -> float:
+    """Orbit of the cage in a quarter of a run over the radial play (1); of several cages the largest."""
     return max(float(_quarter(one, number).cage_motion.orbit_over_play) for one in result.parts)
-
-
-def kind_before(result: Result | AssemblyResult) -> float:
-    """Class of the motion in the third quarter of a run, as a place in `KINDS`."""
-    return _kind(result, 2)
-
-
-def kind_at_end(result: Result | AssemblyResult) -> float:
-    """Class of the motion in the last quarter, as a place in `KINDS`."""
-    return _kind(result, 3)
-
-
-def orbit_before(result: Result | AssemblyResult) -> float:
-    """Orbit of the cage in the third quarter over the radial play (1); of several cages the largest."""
-    return _orbit(result, 2)
-
-
-def orbit_at_end(result: Result | AssemblyResult) -> float:
-    """Orbit of the cage in the last quarter over the radial play (1); of several cages the largest."""
-    return _orbit(result, 3)
 
 
 def hits_at_end(result: Result | AssemblyResult) -> float:
@@ -108,9 +91,13 @@ def impulse_at_end(result: Result | AssemblyResult) -> float:
     return sum(one.hits * one.impulse_per_hit for one in found) / max(1, sum(one.hits for one in found))
 
 
-OBSERVED: Final = {
-    function.__name__: function
-    for function in (kind_before, kind_at_end, orbit_before, orbit_at_end, hits_at_end, impulse_at_end)
+OBSERVED: Final[Mapping[str, Observable]] = {
+    "kind_before": partial(kind_in, 2),
+    "kind_at_end": partial(kind_in, 3),
+    "orbit_before": partial(orbit_in, 2),
+    "orbit_at_end": partial(orbit_in, 3),
+    "hits_at_end": hits_at_end,
+    "impulse_at_end": impulse_at_end,
 }
 
 
@@ -249,12 +236,21 @@ def whirl_onset(
     return search.gathered()
 
 
+def numbers_of(field: str, values: Any, unit: str) -> list[float]:
+    """Finite numbers of an argument, ascending in size, each once."""
+    if isinstance(values, str) or not isinstance(values, Sequence | np.ndarray) or not len(values):
+        raise InputError.of(field, values, f"must be a sequence of at least one number ({unit})")
+    found = sorted({number_of(field, value) for value in values}, key=lambda value: (abs(value), value))
+    if not all(np.isfinite(found)):
+        raise InputError.of(field, values, f"must be finite ({unit})")
+    return found
+
+
 def speeds_of(speeds: Any) -> list[float]:
-    if isinstance(speeds, str) or not isinstance(speeds, Sequence | np.ndarray) or not len(speeds):
-        raise InputError.of("speeds", speeds, "must be a sequence of at least one number (rpm)")
-    found = sorted({number_of("speeds", speed) for speed in speeds}, key=abs)
-    if not all(np.isfinite(found)) or found[0] * found[-1] <= 0.0 or min(found) * max(found) <= 0.0:
-        raise InputError.of("speeds", speeds, "must be finite, of one sign and not 0 (rpm)")
+    """Speeds of one sign (rpm), ascending in size."""
+    found = numbers_of("speeds", speeds, "rpm")
+    if min(found) * max(found) <= 0.0:
+        raise InputError.of("speeds", speeds, "must be of one sign and not 0 (rpm)")
     return found
 
 
