@@ -26,6 +26,7 @@ from trbdyn.run.toml_case import bearing_from_table, build, effects_from_table, 
 
 FIRST: Final = {"scene.speed_rpm": "3000", "scene.axial_load": "4930", "run.revolutions": "10"}
 """What stands in the fields of a new design."""
+POCKET: Final = "bearing.cage.pocket."
 _OF_PAIR: Final = {"spread": "spread", "position": "spread", "end_play": "end_play", "arrangement": "arrangement",
                    "mass": "mass", "outer_diameter": "diameter", "length": "length"}  # fmt: skip
 """Fields of a pair by the names that errors have."""
@@ -207,10 +208,10 @@ def _build(made: Built, design: Design) -> None:
     if not pair and "assembly" not in tables:
         tables.setdefault("scene", {})
     for path, value in made.values.items():
-        if path.startswith(("pair.", "bearing.cage.pocket.")) or (path.startswith("scene.") and "scene" not in tables):
+        if path.startswith(("pair.", POCKET)) or (path.startswith("scene.") and "scene" not in tables):
             continue
         _put(tables, path, value)
-    pocket = {path.rsplit(".", 1)[1]: value for path, value in made.values.items() if ".cage.pocket." in path}
+    pocket = _of(made, POCKET)
     if pocket.get("shape", "default") != "default":
         tables["bearing"].setdefault("cage", {})["pocket"] = pocket
     if not opened:
@@ -301,14 +302,10 @@ def _bearing_lines(design: Design, made: Built) -> list[str]:
         lines = [f"bearing = trb.Bearing.from_catalogue({said})"]
     else:
         lines = [f"bearing = trb.cases.{BEARINGS[design.source].__name__}()"]
-    changes = {
-        path.removeprefix("bearing."): value
-        for path, value in made.values.items()
-        if path.startswith("bearing.") and ".cage.pocket." not in path
-    }
+    changes = {path: value for path, value in _of(made, "bearing.").items() if not path.startswith("cage.pocket.")}
     if changes:
         lines.append(f"bearing = bearing.replace({changes!r})")
-    pocket = {path.rsplit(".", 1)[1]: value for path, value in made.values.items() if ".cage.pocket." in path}
+    pocket = _of(made, POCKET)
     shape = pocket.pop("shape", "default")
     if shape != "default":
         said = "".join(f", {name}={value!r}" for name, value in pocket.items())

@@ -15,7 +15,7 @@ from matplotlib.patches import Circle
 from matplotlib.ticker import MultipleLocator
 
 from trbdyn.errors import InputError
-from trbdyn.plot.style import COLOURS, GREY, LINES, canvas, is_own, legend, line, sequence
+from trbdyn.plot.style import COLOURS, GREY, LINES, canvas, is_own, legend, line, pair, sequence
 from trbdyn.results import observables
 from trbdyn.results.result import Result
 
@@ -162,15 +162,7 @@ def tilt(result: Result, ax: Axes | None = None, last: float | None = 12.0) -> A
     shown = last_turns(result, last)
     with canvas(ax, (6.4, 3.4), "Tilt of the cage's axis") as ax:
         turned = revolutions(shown)
-        for index, name in enumerate(("x", "y")):
-            line(
-                ax,
-                turned,
-                1e3 * shown["cage_tilt"][:, index],
-                2 * index,
-                rf"$\theta_{name}$",
-                linestyle=("-", "--")[index],
-            )
+        pair(ax, turned, 1e3 * shown["cage_tilt"], r"$\theta_{}$")
         ax.axhline(0, color=GREY, linewidth=0.8)
         ax.set(xlabel=turns_label(result), ylabel="cage tilt (mrad)", xlim=(turned[0], turned[-1]))
         legend(ax)
@@ -228,16 +220,8 @@ def whirl_map(results: Iterable[Result], ax: Axes | None = None) -> Axes:
     ]
     speed, load, radius = np.array(points).T
     with canvas(ax, (5.6, 4.4), "Orbit radius of the cage over speed and load") as ax:
-        marks = ax.scatter(
-            speed,
-            load,
-            s=60 + 400 * np.clip(radius, 0, 1.2),
-            c=radius,
-            cmap=sequence(),
-            vmin=0,
-            vmax=1,
-            edgecolors="black",
-        )
+        sizes, colours = 60 + 400 * np.clip(radius, 0, 1.2), {"c": radius, "cmap": sequence(), "vmin": 0, "vmax": 1}
+        marks = ax.scatter(speed, load, s=sizes, edgecolors="black", **colours)
         for x, y, value in zip(speed, load, radius, strict=True):
             ax.annotate(f"{value:.2f}", (x, y), xytext=(14, 8), textcoords="offset points", fontsize=9)
         ax.figure.colorbar(marks, ax=ax, shrink=0.8, pad=0.02).set_label("orbit radius, rms / $C_{pr}$")

@@ -149,7 +149,7 @@ def pocket_drawing(bearing: Bearing, pocket: int = 0) -> Figure:
     """
     _check_pocket(bearing, pocket)
     geometry, roller = bearing.geometry, bearing.roller
-    faces, gaps = bearing.pocket_of(pocket).faces, bearing.pocket_of(pocket).gaps(bearing.geometry)
+    gaps = bearing.pocket_of(pocket).gaps(bearing.geometry)
     around = np.linspace(0.0, 2.0 * np.pi, 121)
     half = 0.5e3 * roller.total_length
     with styled():
@@ -161,16 +161,12 @@ def pocket_drawing(bearing: Bearing, pocket: int = 0) -> Figure:
         radius = 1e3 * (0.5 * roller.diameter + stations * np.tan(geometry.roller_half_angle))
         outline = np.concatenate([np.stack([1e3 * stations, radius], 1), np.stack([1e3 * stations, -radius], 1)[::-1]])
         top.add_patch(Polygon(outline, facecolor=ROLLER, edgecolor="black", linewidth=1.0))
-        surfaces: dict[int, list[Face]] = {}
-        for face in faces:
-            surfaces.setdefault(face.slot, []).append(face)
-        for index, facets in enumerate(surfaces.values()):
+        for (name, many, colour), facets in _surfaces(bearing, pocket):
             gap = round(1e3 * min(gaps[face.name] for face in facets), 6)
-            label = f"{facets[0].name.replace('_', ' ')}: gap {gap:.3g} mm"
-            label += f", {len(facets)} facets" if len(facets) > 1 else ""
+            label = f"{name}: gap {gap:.3g} mm{many}"
             for face in facets:
                 corners = 1e3 * np.vstack([face.vertices, face.vertices[:1]])
-                look = {"color": colour_of(index), "linewidth": 1.8 / math.sqrt(len(facets))}
+                look = {"color": colour, "linewidth": 1.8 / math.sqrt(len(facets))}
                 end.plot(corners[:, 1], corners[:, 0], label=label if face is facets[0] else None, **look)
                 top.plot(corners[:, 2], corners[:, 1], **look)
         end.set(aspect="equal", xlabel="in the direction of rotation, t (mm)", ylabel="outward, n (mm)")
@@ -201,9 +197,6 @@ def cage_drawing(bearing: Bearing, pocket: int = 0) -> Figure:
     """
     _check_pocket(bearing, pocket)
     drawn = triangles_in_pocket(bearing, pocket)
-    facets: dict[int, list[Face]] = {}
-    for face in bearing.pocket_of(pocket).faces:
-        facets.setdefault(face.slot, []).append(face)
     with styled():
         figure, light = plt.figure(figsize=(10.5, 5.0)), LightSource(azdeg=225.0, altdeg=45.0)
         for place, title in enumerate(("as drawn", "recognised: what a roller can touch")):
@@ -212,14 +205,10 @@ def cage_drawing(bearing: Bearing, pocket: int = 0) -> Figure:
                 drawn, facecolors="#D9DEE3", shade=True, lightsource=light, alpha=0.35 if place else 1.0
             )
             ax.add_collection3d(grey, autolim=False)
-            for index, surface in enumerate(facets.values() if place else ()):
-                corners = [1e3 * np.asarray(face.vertices)[:, [1, 2, 0]] for face in surface]
-                label = surface[0].name.replace("_", " ") + (f", {len(surface)} facets" if len(surface) > 1 else "")
-                colour = colour_of(index)
-                ax.add_collection3d(
-                    Poly3DCollection(corners, facecolor=colour, edgecolor=colour, linewidth=0.3, label=label),
-                    autolim=False,
-                )
+            for (name, many, colour), facets in _surfaces(bearing, pocket) if place else ():
+                corners = [1e3 * np.asarray(face.vertices)[:, [1, 2, 0]] for face in facets]
+                look = {"facecolor": colour, "edgecolor": colour, "linewidth": 0.3, "label": f"{name}{many}"}
+                ax.add_collection3d(Poly3DCollection(corners, **look), autolim=False)
             points = drawn.reshape(-1, 3)
             low, high = points.min(axis=0), points.max(axis=0)
             ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
@@ -232,6 +221,17 @@ def cage_drawing(bearing: Bearing, pocket: int = 0) -> Figure:
         figure.legend(*ax.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=8)
         figure.suptitle(f"{plain(bearing.name)}, pocket {pocket} of {plain(Path(bearing.cage.drawing.file).name)}")  # type: ignore[union-attr]
     return figure
+
+
+def _surfaces(bearing: Bearing, pocket: int) -> list[tuple[tuple[str, str, Any], list[Face]]]:
+    """The surfaces of a pocket, with name, number of facets in words, and colour, and their facets."""
+    found: dict[int, list[Face]] = {}
+    for face in bearing.pocket_of(pocket).faces:
+        found.setdefault(face.slot, []).append(face)
+    return [
+        ((of[0].name.replace("_", " "), f", {len(of)} facets" if len(of) > 1 else "", colour_of(index)), of)
+        for index, of in enumerate(found.values())
+    ]
 
 
 def _check_pocket(bearing: Bearing, pocket: object) -> None:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from trbdyn.errors import InputError
 from trbdyn.plot.cage import last_turns, revolutions, turns_label
-from trbdyn.plot.style import COLOURS, GREY, canvas, legend, line, sequence, styled
+from trbdyn.plot.style import COLOURS, GREY, canvas, legend, line, pair, sequence, styled
 from trbdyn.results import observables
 from trbdyn.results.result import Result
 
@@ -71,15 +71,14 @@ def draw_motion(title: str, result: Result, place: Array, tilt: Array, across: s
     with styled():
         figure, axes = plt.subplots(3, 1, figsize=(6.4, 5.6), sharex=True)
         figure.suptitle(title, fontsize=11)
-        for index, name in enumerate("xy"):
-            line(axes[0], turned, 1e6 * place[:, index], 2 * index, name, linestyle=("-", "--")[index])
-            line(axes[2], turned, 1e3 * tilt[:, index], 2 * index, f"about {name}", linestyle=("-", "--")[index])
+        pair(axes[0], turned, 1e6 * place, "{}")
+        pair(axes[2], turned, 1e3 * tilt, "about {}")
         line(axes[1], turned, 1e6 * place[:, 2], 0)
         axes[0].set_ylabel(f"{across} (µm)")
         axes[1].set_ylabel("axial, z (µm)")
         axes[2].set(ylabel="tilt (mrad)", xlabel=turns_label(result), xlim=(turned[0], turned[-1]))
         for ax in (axes[0], axes[2]):
-            ax.legend(fontsize=8, loc="best", frameon=True, framealpha=0.85, edgecolor="none")
+            legend(ax)
     return figure
 
 
@@ -109,6 +108,15 @@ def ring_orders(result: Result) -> dict[str, float]:
         "rollers over the inner ring": count * abs(inner - cage),
         "spin of a roller, twice": 2.0 * geometry.roller_spin_ratio * abs(inner - outer),
     }
+
+
+def mark_orders(ax: Axes, result: Result, scale: float, ends: tuple[float, float], label: str) -> None:
+    """Mark the bearing's orders times a scale, where they lie between two ends, with their numbers in the legend."""
+    for index, (name, order) in enumerate(ring_orders(result).items()):
+        place, colour = scale * abs(order), COLOURS[(index + 1) % len(COLOURS)]
+        if ends[0] <= place <= ends[1]:
+            words = f"{name}, {label.format(place)}"
+            ax.axvline(place, color=colour, linewidth=0.9, linestyle="--", label=words)
 
 
 def ring_spectrum(
@@ -155,10 +163,7 @@ def ring_spectrum(
     unit = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s$^2$"}[of]
     with canvas(ax, (6.4, 3.6), f"Vibration of the {title} along {along}: {of}") as ax:
         ax.semilogy(frequency[kept] / shaft, amplitude, color=COLOURS[0], linewidth=0.9)
-        for index, (name, order) in enumerate(ring_orders(result).items()):
-            if order <= orders:
-                label = f"{name}, {order:.3g}"
-                ax.axvline(order, color=COLOURS[(index + 1) % len(COLOURS)], linewidth=0.9, linestyle="--", label=label)
+        mark_orders(ax, result, 1.0, (-np.inf, orders), "{:.3g}")
         highest = float(amplitude.max(initial=0.0))
         if highest > 0.0:
             ax.set_ylim(max(1e-6 * highest, float(amplitude[amplitude > 0.0].min())), 3.0 * highest)

@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from matplotlib.axes import Axes
 
-from trbdyn.plot.ring import ring_orders
+from trbdyn.plot.ring import mark_orders
 from trbdyn.plot.style import COLOURS, canvas, legend
 from trbdyn.results.forces import Along, On
 from trbdyn.results.result import Result
@@ -35,11 +35,7 @@ def force_spectrum(
     amplitude = found.amplitude[shown]
     with canvas(ax, (7.2, 4.2), found.force.words) as ax:
         ax.loglog(found.frequency[shown], amplitude, color=COLOURS[0], linewidth=0.8)
-        for index, (name, order) in enumerate(ring_orders(result).items()):
-            place = abs(order) * found.shaft_frequency
-            if found.frequency[1] <= place <= top:
-                colour = COLOURS[(index + 1) % len(COLOURS)]
-                ax.axvline(place, color=colour, linewidth=0.9, linestyle="--", label=f"{name}, {place:.4g} Hz")
+        mark_orders(ax, result, found.shaft_frequency, (found.frequency[1], top), "{:.4g} Hz")
         if (peak := float(amplitude.max(initial=0.0))) > 0.0:
             ax.set_ylim(1e-4 * peak, 3.0 * peak)
         ax.set(xlabel=f"frequency (Hz); {found.force.sampling}", ylabel="amplitude (N)")

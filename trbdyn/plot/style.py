@@ -160,6 +160,12 @@ def line(ax: Axes, x: Array, y: Array, index: int = 0, label: str | None = None,
     return ax.plot(*thin(x, y), **style)[0]
 
 
+def pair(ax: Axes, x: Array, values: Array, label: str) -> None:
+    """Curves of the x and the y part of a vector, shape (n, 2); the label has {} where x and y stand."""
+    for index, name in enumerate("xy"):
+        line(ax, x, values[:, index], 2 * index, label.format(name), linestyle=("-", "--")[index])
+
+
 def plain(text: str) -> str:
     """A text that a user gave, as Matplotlib shows it letter by letter: no mathematics, nothing that moves a cursor."""
     return printable(text).replace("$", r"\$")

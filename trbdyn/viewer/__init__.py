@@ -1,11 +1,8 @@
 """A result, of a bearing or of several on a shaft, as a moving 3-D view in a browser: one HTML file that needs no network.
 A bearing's result can be saved as an animated glTF file, too.
 
-The view is drawn by three.js. It was chosen by looking into the packages that can be installed from PyPI: the package
-jupyter-threejs-sage carries three.js itself (0.6 MB, with orbit controls), so that picking, histories, exaggerated
-motion and colours of one's own can be written against it. k3d (a file of 2.6 MB for the program alone) keeps its scene
-to itself and gives no panel of one's own; vtk.js comes with trame only as a finished program that plays no record;
-anythreejs needs a Jupyter page. Nothing was drawn with these.
+The view is drawn by three.js, which the package jupyter-threejs-sage carries itself (0.6 MB, with orbit controls), so that
+picking, histories, exaggerated motion and colours of one's own can be written against it.
 """
 
 from __future__ import annotations
