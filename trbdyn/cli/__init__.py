@@ -9,6 +9,7 @@ Each command imports what it needs when it runs, so that ``--help`` comes at onc
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Sequence
 from typing import Final
 
@@ -42,7 +43,8 @@ COMMANDS: Final = (
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line with the words after the program's name, by default those of the process; gives the exit code."""
     let_any_name_be_printed()
-    options = make_parser().parse_args(arguments)
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    options = make_parser().parse_args(words, argparse.Namespace(words=words))
     return run_command(options.command, options)
 
 

@@ -67,10 +67,8 @@ def ensemble(options: Options) -> int:
             progress=not options.quiet,
         )
     except KeyboardInterrupt:
-        say(
-            f"trbdyn: stopped; the designs that are done are kept in {folder}. Go on: {_again(options)}",
-            file=sys.stderr,
-        )
+        again = command(*options.words)
+        say(f"trbdyn: stopped; the designs that are done are kept in {folder}. Go on: {again}", file=sys.stderr)
         return INTERRUPTED
     found = replace(found, shown=tuple(name for name in options.predict if name in found.spreads))
     fits: list[object] = []
@@ -93,12 +91,3 @@ def _band(text: str) -> tuple[str, float, float]:
         return path.strip(), float(low), float(high)
     except ValueError:
         raise InputError.of("--band", text, "must be PATH=LOW:HIGH, for instance scene.speed_rpm=1000:6000") from None
-
-
-def _again(options: Options) -> str:
-    words = ["ensemble", options.case, *(word for text in options.band for word in ("--band", text))]
-    words += ["--designs", options.designs, "--seed", options.seed, "--predict", *options.predict]
-    words += [word for text in options.changes for word in ("--set", text)]
-    words += ["--workers", options.workers] if options.workers is not None else []
-    words += ["-o", options.output] if options.output else []
-    return command(*words)

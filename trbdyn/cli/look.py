@@ -58,19 +58,17 @@ def info(options: Options) -> int:
     if path.is_file() and path.suffix != ".toml":
         return _info_result(path, as_json=options.json)
     scene, run = subject_with_changes(options.file, options.changes)
-    if not isinstance(scene, Scene):
+    if options.json:
+        say(json.dumps({type(scene).__name__.lower(): scene.to_dict(), "run": run.to_dict()}, indent=2))
+    elif isinstance(scene, Scene):
+        say(_describe(scene))
+        say("\nderived geometry (m, rad, kg)")
+        for name, value in asdict(scene.bearing.geometry).items():
+            say(f"    {name:<28} {value:.6g}")
+    else:
         from trbdyn.statics.assembly import equilibrium
 
-        as_json = {"assembly": scene.to_dict(), "run": run.to_dict()}
-        say(json.dumps(as_json, indent=2) if options.json else f"{scene._shown().text()}\n\n{equilibrium(scene)}")
-        return DONE
-    if options.json:
-        say(json.dumps({"scene": scene.to_dict(), "run": run.to_dict()}, indent=2))
-        return DONE
-    say(_describe(scene))
-    say("\nderived geometry (m, rad, kg)")
-    for name, value in asdict(scene.bearing.geometry).items():
-        say(f"    {name:<28} {value:.6g}")
+        say(f"{scene._shown().text()}\n\n{equilibrium(scene)}")
     return DONE
 
 

@@ -45,7 +45,7 @@ def sweep(options: Options) -> int:
     try:
         data = run(study, folder, workers=options.workers, resume=not options.again, progress=not options.quiet)
     except KeyboardInterrupt:
-        again = command("sweep", options.study, "-o", folder)
+        again = command(*(word for word in options.words if word != "--again"))
         say(
             f"trbdyn: stopped; the cases that are done are kept in {folder}. Go on with the others: {again}",
             file=sys.stderr,

@@ -44,11 +44,10 @@ def torque(options: Options) -> int:
 
     scene, run = subject_with_changes(options.case, options.changes)
     loads: list[float | tuple[float, float]] = [_load(text) for text in options.loads or ()]
-    if not loads and not isinstance(scene, Scene):
-        raise InputError.of(
-            "--loads", MISSING, "must be given for bearings on a shaft: forces on the centre of mass (N)"
-        )
-    if isinstance(scene, Scene) and not loads:
+    if not loads:
+        if not isinstance(scene, Scene):
+            limit = "must be given for bearings on a shaft: forces on the centre of mass (N)"
+            raise InputError.of("--loads", MISSING, limit)
         loads = [(value_at(scene.axial_load, 0.0), value_at(scene.radial_load, 0.0))]
     name = options.output or f"{Path(options.case).stem}_torque"
     again = {"overwrite": options.overwrite}
