@@ -5,19 +5,16 @@ from __future__ import annotations
 import json
 import math
 import re
-import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from chance import like, mean_difference
+from judge import MOST_STEPS, bounded_run, by_chance, judge, scene_duration
+from random_scenes import KINDS, ORDINARY, draw, make
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE))
-
-from chance import like, mean_difference  # noqa: E402
-from judge import MOST_STEPS, bounded_run, by_chance, judge, scene_duration  # noqa: E402
-from random_scenes import KINDS, ORDINARY, draw, make  # noqa: E402
 
 FINE = ("right", "warned", "chance", "stopped", "refused", "unjudged")
 FOUND = sorted((HERE / "found").glob("*.json"))

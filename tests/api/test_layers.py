@@ -199,15 +199,7 @@ def test_the_command_line_hands_on_every_option_of_a_case(monkeypatch: pytest.Mo
 
 def load_rules() -> ModuleType:
     pytest.importorskip("grimp", reason="grimp comes with make lint")
-    place = ROOT / ".ci" / "lint_imports.py"
-    if not place.is_file():
-        pytest.skip("the checks are not part of a source distribution")
-    spec = importlib.util.spec_from_file_location("lint_imports", place)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return pytest.importorskip("lint_imports", reason="the checks are not part of a source distribution")
 
 
 def test_a_circle_of_imports_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

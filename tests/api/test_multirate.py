@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from shared import lost
 
 import trbdyn as trb
 from trbdyn import Effects, InputError, Simulation
@@ -20,10 +21,6 @@ SCENES: dict[str, Any] = {
     "as given": lambda: scene_30310(2000.0, 4930.0, 5530.0),
     "follows": lambda: scene_30310(2000.0, 4930.0, 5530.0, ring="follows"),
 }
-
-
-def lost(result: trb.Result) -> float:
-    return sum(float(result[f.name][-1] - result[f.name][0]) for f in result.fields if f.name.startswith("loss_"))
 
 
 @pytest.mark.parametrize("name", SCENES)

@@ -16,7 +16,7 @@ import pytest
 import tqdm
 
 import trbdyn as trb
-from trbdyn.errors import FileError, InputError, StepError
+from trbdyn.errors import FileError, InputError
 from trbdyn.model.cases import paper_30310
 from trbdyn.results.fields import Field
 from trbdyn.run import checkpoint, memory, running
@@ -84,17 +84,6 @@ def test_a_start_that_fails_leaves_a_simulation_without_looks(tmp_path: Path, mo
             sim.run(duration=1e-3, checkpoint_every=1e-4, output=tmp_path / "run.h5")
     assert sim._core.row_length == sim.bearings[0].model.record_length
     assert sim.run(duration=1e-3).success
-
-
-def test_rollers_without_a_cage_must_not_touch() -> None:
-    effects = trb.Effects.paper().replace(bodies="rollers")
-    scene = paper_30310(3000.0, 4930.0, effects=effects, start=trb.Start.equal())
-    sim = trb.Simulation(scene, when_wrong="go_on")
-    vector = sim.state.vector
-    sim.view(vector)["roller_psi"][3] += 0.2  # 8.2 mm of the 7.3 mm between two rollers
-    sim.set_state(vector)
-    with pytest.raises(StepError, match="two rollers touch before"):
-        sim.run(duration=1e-3)
 
 
 @pytest.mark.parametrize("groups", [None, ("cage", "peaks"), ("cage", "pocket")])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -16,14 +15,11 @@ import pytest
 pytest.importorskip("xarray")
 pytest.importorskip("matplotlib")
 
-BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
-if not BENCHMARKS.is_dir():
-    pytest.skip("the benchmarks are not part of a source distribution", allow_module_level=True)
-sys.path.insert(0, str(BENCHMARKS))
+pytest.importorskip("paper", reason="the benchmarks are not part of a source distribution")
 
-from paper.sensitivity import command, effects, indicators, plan  # noqa: E402
-from paper.sensitivity.inputs import inputs  # noqa: E402
-from paper.sensitivity.plan import NOMINAL, PLACES, Plan, case  # noqa: E402
+from paper.sensitivity import command, effects, indicators, plan
+from paper.sensitivity.inputs import inputs
+from paper.sensitivity.plan import NOMINAL, PLACES, Plan, case
 
 ENTRIES = inputs()
 LEVELS = [(entry, level) for entry in ENTRIES for level in entry.levels]

@@ -75,13 +75,6 @@ def test_lean_of_bars_names_the_plays() -> None:
     assert caught.value.field == "bearing.cage.play_circumferential"
 
 
-def test_too_many_records() -> None:
-    """It ended in a MemoryError."""
-    with pytest.raises(InputError, match="records in this run") as caught:
-        Simulation(paper_30310(), accuracy="fast").run(duration=1.0, save_every=1e-12)
-    assert caught.value.field == "run.save_every"
-
-
 @pytest.mark.parametrize("name", ["a.csv", "a.JSON", "a.npz"])
 def test_output_of_another_kind(name: str, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"must end in \.h5"):

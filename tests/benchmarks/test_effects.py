@@ -53,8 +53,7 @@ def test_what_is_off_is_not_evaluated(effects: dict[str, Any]) -> None:
 
 
 @pytest.fixture
-def catalogue(monkeypatch: pytest.MonkeyPatch) -> Any:
-    monkeypatch.syspath_prepend(str(BENCHMARKS))
+def catalogue() -> Any:
     from effect_cost import build, catalogue
 
     return build, catalogue

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -14,13 +13,9 @@ BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
 
 @pytest.fixture(scope="module")
 def front() -> Any:
-    sys.path.insert(0, str(BENCHMARKS))
-    try:
-        import front as module
+    import front
 
-        yield module
-    finally:
-        sys.path.remove(str(BENCHMARKS))
+    return front
 
 
 def test_cost_at_an_error_lies_on_the_front(front: Any) -> None:

@@ -6,7 +6,6 @@ Half an hour: ``make test SLOW=1 PYTEST="-k interval_coverage"``. The same with 
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import pytest
@@ -26,10 +25,8 @@ ASKED_FOR = (
 
 
 @pytest.mark.slow
-def test_intervals_hold_the_value_of_a_long_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_intervals_hold_the_value_of_a_long_run(tmp_path: Path) -> None:
     """Of runs of a given length, and of those that `until` ended, which end when an interval is narrow."""
-    monkeypatch.syspath_prepend(str(BENCHMARKS))
-    monkeypatch.delitem(sys.modules, "interval_coverage", raising=False)
     import interval_coverage
 
     report = interval_coverage.main(["--runs", "40", "--folder", str(tmp_path)])

@@ -83,11 +83,8 @@ def test_stored_windows_are_long_enough(work_precision: dict[str, Any]) -> None:
 
 
 def test_stored_scenes() -> None:
-    sys.path.insert(0, str(BENCHMARKS))
-    try:
-        from accuracy import states
-    finally:
-        sys.path.remove(str(BENCHMARKS))
+    from accuracy import states
+
     for name, definition in states.CASES.items():
         case = states.load_case(name)
         assert len(case.states) == len(case.windows) == 5
@@ -133,9 +130,8 @@ def test_a_users_run_is_measured_beside_its_steps(tmp_path: Path) -> None:
         assert min(row["memory_over_bare"], row["file_over_bare"]) > 0.0
 
 
-def test_ratios_of_a_users_run_are_those_within_a_repeat(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ratios_of_a_users_run_are_those_within_a_repeat() -> None:
     """The machine was half as fast in the second and third repeat."""
-    monkeypatch.syspath_prepend(str(BENCHMARKS))
     from accuracy import user
 
     wall = {"bare": [1.0, 2.0, 2.0], "memory": [1.1, 2.2, 2.2], "file": [1.3, 2.4, 2.6]}
@@ -232,12 +228,9 @@ class TestEstimate:
         ],
     )
     def test_takes_the_scene_most_like_it(self, fields: dict[str, Any], case: str) -> None:
-        sys.path.insert(0, str(BENCHMARKS))
-        try:
-            from accuracy import states
-            from work_precision import operating_point
-        finally:
-            sys.path.remove(str(BENCHMARKS))
+        from accuracy import states
+        from work_precision import operating_point
+
         scenes = {name: operating_point(states.load_case(name)) for name in states.CASES}
         bearing = cases.rig_30310()
         if fields.get("bearing"):

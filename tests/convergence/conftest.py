@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from shared import tolerances
 
 import trbdyn as trb
 from trbdyn import Effects, Simulation
@@ -28,17 +29,6 @@ def throw(sim: Simulation, share: float = 1.0) -> None:
     for name, value in THROWN.items():
         sim.view(vector)[f"cage_{name}"] += share * value
     sim.set_state(vector)
-
-
-def tolerances(rtol: float) -> dict[str, float]:
-    """All tolerances in the proportions of the presets."""
-    return {
-        "rtol": rtol,
-        "atol_position": 1e-5 * rtol,
-        "atol_angle": 1e-3 * rtol,
-        "atol_velocity": 0.1 * rtol,
-        "atol_spin": 10.0 * rtol,
-    }
 
 
 def tilted_state(sim: Simulation, tilt: float) -> NDArray[np.float64]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +17,6 @@ pytestmark = pytest.mark.skipif(
 
 @pytest.fixture(scope="module")
 def figures() -> Any:
-    sys.path.insert(0, str(ROOT / "docs"))
     import figures
 
     return figures

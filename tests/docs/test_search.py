@@ -24,7 +24,6 @@ PAGES = {
 
 def test_a_how_to_is_found_before_the_api(tmp_path: Path) -> None:
     pytest.importorskip("sphinx")
-    sys.path.insert(0, str(ROOT / "tests" / "view"))
     from browser import Browser, executable
 
     if executable() is None:

@@ -5,9 +5,8 @@
 from __future__ import annotations
 
 import contextlib
-import importlib
+import importlib.util
 import io
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
@@ -26,10 +25,8 @@ from trbdyn.cli import FAULT, main
 from trbdyn.model.cases import paper_30310
 from trbdyn.run import running
 
-BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 paper: ModuleType | None = None
-if BENCHMARKS.is_dir():  # a source distribution has none
-    sys.path.insert(0, str(BENCHMARKS))
+if importlib.util.find_spec("paper"):  # a source distribution has no benchmarks
     paper = importlib.import_module("paper.command")
 
 ODD = [

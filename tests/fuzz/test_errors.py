@@ -18,6 +18,7 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
+from shared import environment
 
 import trbdyn as trb
 from trbdyn import plot, study
@@ -301,9 +302,8 @@ def test_datasets_that_claim_more_than_the_file_holds(written: Path, tmp_path: P
 
     path = changed(written, tmp_path, change)
     assert path.stat().st_size < 4 << 20
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
     words = [sys.executable, "-P", "-c", MEMORY, str(path)]
-    done = subprocess.run(words, capture_output=True, text=True, env=environment, check=True)
+    done = subprocess.run(words, capture_output=True, text=True, env=environment(), check=True)
     assert "damaged" in done.stderr
     assert int(done.stdout) < 100 << 10, "kilobytes"
 

@@ -11,12 +11,12 @@ import stat
 import subprocess
 import sys
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from shared import Cut, cut_after, environment
 
 import trbdyn as trb
 from trbdyn.base.locks import take_lock
@@ -28,18 +28,6 @@ from trbdyn.run.checkpoint import checkpoint_path, previous_path
 
 SPAN = {"duration": 4e-3, "save_every": 1e-5}
 FOREIGN = b"days of work of somebody else\n"
-
-
-class Cut(Exception):
-    """Ends a run from within."""
-
-
-def cut_after(time: float) -> Callable[[trb.Simulation], None]:
-    def callback(sim: trb.Simulation) -> None:
-        if sim.time > time:
-            raise Cut
-
-    return callback
 
 
 def run(output: Path | str, **options: Any) -> trb.Result:
@@ -129,9 +117,8 @@ trb.Simulation(scene_30310()).run(duration=1e-3, output=sys.argv[1])
 
 def test_a_run_that_is_killed_before_its_file_appears_leaves_nothing_for_long(tmp_path: Path) -> None:
     path = tmp_path / "run.h5"
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
     words = [sys.executable, "-P", "-c", KILLED_IN_A_DRAFT, str(path)]
-    assert subprocess.run(words, env=environment, check=False).returncode == -signal.SIGKILL
+    assert subprocess.run(words, env=environment(), check=False).returncode == -signal.SIGKILL
     assert [name.endswith(".new") for name in names(tmp_path)] == [True]
     assert run(path).success
     assert names(tmp_path) == ["run.h5"]
@@ -384,9 +371,8 @@ def test_a_forked_child_leaves_the_file_alone(tmp_path: Path, forkless: trb.Resu
     """A callback may fork, as a pool of workers does: the child writes nothing, removes nothing and keeps no lock."""
     path = tmp_path / "run.h5"
     words = [sys.executable, "-P", "-c", CHILD, how, str(path)]
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
     process = subprocess.Popen(
-        words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment, text=True, start_new_session=True
+        words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment(), text=True, start_new_session=True
     )
     try:
         assert process.stdout is not None
@@ -420,10 +406,9 @@ def test_of_two_that_resume_a_lost_result_one_goes_on(tmp_path: Path) -> None:
     path = tmp_path / "run.h5"
     cut_run(path, 2e-3, duration=0.05)
     path.unlink()
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
     words = [sys.executable, "-P", "-c", RESUME, str(path)]
     pipes: dict[str, Any] = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
-    both = [subprocess.Popen(words, **pipes, env=environment, text=True) for _ in range(2)]
+    both = [subprocess.Popen(words, **pipes, env=environment(), text=True) for _ in range(2)]
     for process in both:
         assert process.stdout.readline() == "ready\n"
     for process in both:

@@ -254,24 +254,6 @@ def test_signals_while_stepping_change_no_bit(tmp_path: Path) -> None:
     np.testing.assert_array_equal(disturbed.cage_position, undisturbed.cage_position)
 
 
-class Broken(Exception):
-    pass
-
-
-def test_what_a_callback_raises_comes_out_and_the_simulation_goes_on(tmp_path: Path) -> None:
-    def callback(now: trb.Simulation) -> None:
-        raise Broken("by the callback")
-
-    sim = trb.Simulation(scene(0))
-    with pytest.raises(Broken, match="by the callback"):
-        sim.run(duration=0.1, output=tmp_path / "run.h5", callback=callback)
-    kept = trb.load(tmp_path / "run.h5")
-    assert not kept.success
-    assert "Broken" in kept.message
-    assert len(kept) > 0
-    assert sim.run(duration=1e-3).success
-
-
 @pytest.mark.skipif(os.name != "posix", reason="needs signals")
 def test_ctrl_c_while_stepping_ends_the_run_and_resume_goes_on(tmp_path: Path) -> None:
     """The signal comes when the file holds records, a moment into a run that would take minutes."""

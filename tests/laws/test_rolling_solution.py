@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -22,12 +20,9 @@ POINTS = [(2.8e-5, 1e-10, 4460.0), (1e-4, 1e-10, 3745.0), (2e-6, 1e-10, 4460.0)]
 
 @pytest.fixture(scope="module")
 def solved() -> dict[tuple[float, float, float], Any]:
-    spec = importlib.util.spec_from_file_location("rolling_solution", SOLUTION)
-    assert spec is not None
-    assert spec.loader is not None
-    module = sys.modules["rolling_solution"] = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return {point: module.solve(*point, nodes=100) for point in POINTS}
+    from rolling import solution
+
+    return {point: solution.solve(*point, nodes=100) for point in POINTS}
 
 
 @pytest.mark.parametrize("point", POINTS)

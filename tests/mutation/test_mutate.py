@@ -5,22 +5,19 @@ from __future__ import annotations
 import json
 import shutil
 import subprocess
-import sys
 from collections import Counter
 from pathlib import Path
 from typing import Any
 
+import faults
+import mutate
+import noticing
 import pytest
+import sandbox
+
+import trbdyn._core as core
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE))
-
-import faults  # noqa: E402
-import mutate  # noqa: E402
-import noticing  # noqa: E402
-import sandbox  # noqa: E402
-
-import trbdyn._core as core  # noqa: E402
 
 OUTER = """
 import json, sys

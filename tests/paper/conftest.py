@@ -1,13 +1,8 @@
-"""The paper's reproduction is a package in benchmarks/, beside the installed one."""
+"""The paper's reproduction is a package in benchmarks/, which a source distribution has not."""
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
+import importlib.util
 
-BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
-
-if BENCHMARKS.is_dir():
-    sys.path.insert(0, str(BENCHMARKS))
-else:  # a source distribution has no benchmarks
+if importlib.util.find_spec("paper") is None:
     collect_ignore_glob = ["test_*.py"]

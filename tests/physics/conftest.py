@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
+from shared import tolerances
 
 import trbdyn as trb
 from trbdyn import Bearing, Effects, Scene, Simulation
@@ -31,17 +32,6 @@ def scene(effects: Effects | None = None, **changes: Any) -> Scene:
 def simulate(effects: Effects | None = None, *, scenery: dict[str, Any] | None = None, **options: Any) -> Simulation:
     """A simulation of `scene(effects, **scenery)`."""
     return Simulation(scene(effects, **(scenery or {})), **options)
-
-
-def tolerances(rtol: float) -> dict[str, float]:
-    """All tolerances in the proportions of the presets."""
-    return {
-        "rtol": rtol,
-        "atol_position": 1e-5 * rtol,
-        "atol_angle": 1e-3 * rtol,
-        "atol_velocity": 0.1 * rtol,
-        "atol_spin": 10.0 * rtol,
-    }
 
 
 def perturbed(sim: Simulation, seed: int, *, back: float = 0.0) -> Array:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import shared
 from numpy.typing import NDArray
 
 import trbdyn as trb
@@ -26,15 +27,7 @@ STILL = np.array([0.0, 0.0, PRELOAD, 0.0, 0.0])
 ROLLERS = 0.28
 """Mass that the rollers of one bearing add to that of an axially vibrating shaft (kg), docs/theory/motion.md#stiffness."""
 WEIGHT = (0.0, -9.80665, 0.0)
-FRICTIONLESS = Effects.standard().replace(
-    bodies="rollers",
-    gravity=False,
-    lubrication="full_film",
-    traction="none",
-    rolling_resistance=False,
-    rolling_pressure_force=False,
-    damping="hunt_crossley",
-)
+FRICTIONLESS = shared.FRICTIONLESS.replace(damping="hunt_crossley")
 
 
 def seat(

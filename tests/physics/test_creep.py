@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -42,8 +41,7 @@ def test_creep_number_scales_with_gravity_and_froude_against_it() -> None:
 
 
 @pytest.fixture
-def planar(monkeypatch: pytest.MonkeyPatch) -> Any:
-    monkeypatch.syspath_prepend(str(Path(__file__).parent))
+def planar() -> Any:
     import planar_cage as planar
 
     return planar

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import shared
 from numpy.typing import NDArray
 
 import trbdyn as trb
@@ -25,15 +26,7 @@ from trbdyn.run.toml_case import case_from_dict
 
 Array = NDArray[np.float64]
 
-FRICTIONLESS = Effects.standard().replace(
-    bodies="rollers",
-    gravity=False,
-    lubrication="full_film",
-    traction="none",
-    rolling_resistance=False,
-    rolling_pressure_force=False,
-    damping="off",
-)
+FRICTIONLESS = shared.FRICTIONLESS.replace(damping="off")
 SURFACES: tuple[On, ...] = ("outer", "inner", "roller")
 
 
@@ -47,11 +40,7 @@ def scene_of(*defects: Defect, **given: Any) -> Scene:
 
 def missing(result: trb.Result) -> float:
     """Energy that is missing at the end over what was lost."""
-    names = [field.name for field in result.fields]
-    put_in = sum(result[name][-1] - result[name][0] for name in names if name.startswith("work_"))
-    lost = sum(result[name][-1] - result[name][0] for name in names if name.startswith("loss_"))
-    stored = result["kinetic_energy"] + result["elastic_energy"]
-    return abs(float(stored[-1] - stored[0] - put_in + lost)) / float(lost)
+    return abs(shared.missing(result)) / shared.lost(result)
 
 
 # ---- the depth that a roller feels ----

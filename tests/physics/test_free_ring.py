@@ -8,10 +8,12 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+import shared
 from numpy.typing import NDArray
+from shared import lost, missing
 
 import trbdyn as trb
-from trbdyn import Effects, History, InputError, Result, RingBody, RotatingLoad, Scene, Simulation, Start
+from trbdyn import Effects, History, InputError, RingBody, RotatingLoad, Scene, Simulation, Start
 from trbdyn.run.replay import Replay
 from trbdyn.statics.core_model import normal_contacts
 from trbdyn.statics.equilibrium import EquilibriumSolver, nominal_angles
@@ -20,35 +22,12 @@ Array = NDArray[np.float64]
 
 RING = RingBody.hollow_cylinder(mass=0.7, inner_diameter=0.05, outer_diameter=0.072, length=0.027)
 ROTOR = RingBody.hollow_cylinder(mass=20.0, outer_diameter=0.08, length=0.1, mass_offset=0.003)
-FRICTIONLESS = Effects.standard().replace(
-    bodies="rollers",
-    gravity=False,
-    lubrication="full_film",
-    traction="none",
-    rolling_resistance=False,
-    rolling_pressure_force=False,
-    damping="hunt_crossley",
-)
+FRICTIONLESS = shared.FRICTIONLESS.replace(damping="hunt_crossley")
 
 
 def scene_of(body: RingBody | None = RING, **given: Any) -> Scene:
     free = {} if body is None else {"ring": "free", "ring_body": body}
     return Scene(trb.cases.rig_30310(), **({"speed_rpm": 3000.0, "axial_load": 4930.0} | free | given))
-
-
-def closure(result: Result) -> float:
-    """Energy that is missing (J) at the end."""
-    names = [field.name for field in result.fields]
-    stored = result["kinetic_energy"] + result["elastic_energy"]
-    put_in = sum(np.asarray(result[name]) for name in names if name.startswith("work_"))
-    lost = sum(np.asarray(result[name]) for name in names if name.startswith("loss_"))
-    balance = stored - put_in + lost
-    return float(balance[-1] - balance[0])
-
-
-def lost(result: Result) -> float:
-    names = [field.name for field in result.fields if field.name.startswith("loss_")]
-    return float(sum(result[name][-1] - result[name][0] for name in names))
 
 
 def peaks_of(values: Array, step: float, near: float) -> float:
@@ -158,12 +137,12 @@ def test_energy_of_a_coast_down_a_run_up_and_a_drop_to_no_load() -> None:
         duration=0.15, save_every=1e-3
     )
     assert coast["shaft_speed"][-1] < 0.7 * coast["shaft_speed"][0]
-    assert abs(closure(coast)) < 1e-3 * lost(coast)
+    assert abs(missing(coast)) < 1e-3 * lost(coast)
     kinetic = coast["kinetic_energy"]
     assert kinetic[0] - kinetic[-1] == pytest.approx(lost(coast), rel=1e-3)
     run_up = Simulation(scene_of(body, torque=9.0, speed_rpm=0.0, axial_load=3000.0)).run(duration=0.1, save_every=1e-3)
     assert run_up["shaft_speed"][-1] > 500.0
-    assert abs(closure(run_up)) < 1e-3 * lost(run_up)
+    assert abs(missing(run_up)) < 1e-3 * lost(run_up)
     assert run_up["work_shaft"][-1] == pytest.approx(
         9.0 * (run_up["shaft_angle"][-1] - run_up["shaft_angle"][0]), rel=1e-4
     )

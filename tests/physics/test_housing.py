@@ -8,7 +8,9 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+import shared
 from numpy.typing import NDArray
+from shared import Cut, cut_after
 
 import trbdyn as trb
 from trbdyn import Assembly, Effects, History, Housing, InputError, RingBody, Scene, Shaft, ShaftLoad, Simulation, Start
@@ -21,18 +23,7 @@ HOUSING = Housing.hollow_cylinder(
     mass=9.0, inner_diameter=0.11, outer_diameter=0.17, length=0.06, mass_offset=0.004
 ).replace(support_radial=3e8, support_axial=2e8, support_tilt=4e5, support_position=0.01)
 ROTOR = RingBody.hollow_cylinder(mass=6.0, outer_diameter=0.06, length=0.1)
-FRICTIONLESS = Effects.standard().replace(
-    bodies="rollers",
-    gravity=False,
-    lubrication="full_film",
-    traction="none",
-    rolling_resistance=False,
-    rolling_pressure_force=False,
-)
-
-
-class Cut(BaseException):
-    """In place of a kill."""
+FRICTIONLESS = shared.FRICTIONLESS
 
 
 def scene_of(housing: Housing | None = HOUSING, rotor: RingBody | None = None, **given: Any) -> Scene:
@@ -204,13 +195,11 @@ def test_states_are_handed_on_with_where_the_ring_stood(tmp_path: Path) -> None:
     scene = scene_of(HOUSING.replace(damping=300.0), start=Start.whirl(0.7))
     whole = Simulation(scene).run(duration=0.012, save_every=1e-3, checkpoint_every=0.004, output=tmp_path / "whole.h5")
 
-    def cut(simulation: Simulation) -> None:
-        if simulation.time > 0.007:
-            raise Cut
-
     path = tmp_path / "cut.h5"
     with pytest.raises(Cut):
-        Simulation(scene).run(duration=0.012, save_every=1e-3, checkpoint_every=0.004, output=path, callback=cut)
+        Simulation(scene).run(
+            duration=0.012, save_every=1e-3, checkpoint_every=0.004, output=path, callback=cut_after(0.007)
+        )
     again = trb.resume(path)
     assert np.array_equal(again["housing_position"], whole["housing_position"])
     simulation = Simulation(scene)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from shared import lost, missing
 
 import trbdyn as trb
 from trbdyn import Assembly, Effects, History, InputError, Result, RingBody, Scene, ShaftLoad, Simulation, Start
@@ -26,13 +27,9 @@ def scene_of(effects: Effects = SPACED, **given: Any) -> Scene:
 
 def closure(result: Result) -> float:
     """Energy that is missing over what was put in and lost."""
-    names = [field.name for field in result.fields]
-    stored = result["kinetic_energy"] + result["elastic_energy"]
-    put_in = sum(np.asarray(result[name]) for name in names if name.startswith("work_"))
-    lost = sum(np.asarray(result[name]) for name in names if name.startswith("loss_"))
-    balance = stored - put_in + lost
-    size = abs(lost[-1] - lost[0]) + np.ptp(stored)
-    return float(abs(balance[-1] - balance[0]) / size)
+    return abs(missing(result)) / (
+        abs(lost(result)) + float(np.ptp(result["kinetic_energy"] + result["elastic_energy"]))
+    )
 
 
 SCENES: dict[str, dict[str, Any]] = {

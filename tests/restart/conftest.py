@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -40,11 +38,6 @@ trb.resume(sys.argv[1])
 def whirl() -> trb.Scene:
     """The scene of all runs here: chaotic enough that one bit more or less shows at its end."""
     return paper_30310(3000.0, 4930.0, start=trb.Start.whirl(0.9))
-
-
-def environment() -> dict[str, str]:
-    """For a process that finds the package where this one does."""
-    return {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
 
 
 @pytest.fixture(scope="session")

@@ -6,12 +6,12 @@ import json
 import math
 import shutil
 import warnings
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from shared import Cut, cut_after
 
 import trbdyn as trb
 from trbdyn import _core
@@ -25,18 +25,6 @@ EVERY, END = 0.9e-3, 5e-3
 
 def scene() -> trb.Scene:
     return paper_30310(3000.0, 4930.0, start=trb.Start.whirl(0.9))
-
-
-class Cut(Exception):
-    """Ends a run from within, as a bug in a user's callback would."""
-
-
-def cut_after(time: float) -> Callable[[trb.Simulation], None]:
-    def callback(sim: trb.Simulation) -> None:
-        if sim.time > time:
-            raise Cut
-
-    return callback
 
 
 def run(output: Path | None = None, **options: Any) -> trb.Result:

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from shared import environment
 
 import trbdyn as trb
 from trbdyn import study
@@ -37,7 +38,7 @@ def start(script: str, path: Path) -> subprocess.Popen[bytes]:
         [sys.executable, "-P", "-W", "ignore", "-c", script, str(path)],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
-        env=runs.environment(),
+        env=environment(),
     )
     assert process.stdout is not None
     assert process.stdout.readline() == b"ready\n"
@@ -139,7 +140,7 @@ def test_the_command_line_resumes(tmp_path: Path, uninterrupted: trb.Result) -> 
     process.kill()
     process.communicate()
     words = [sys.executable, "-P", "-m", "trbdyn", "resume", str(path), "--quiet"]
-    done = subprocess.run(words, capture_output=True, env=runs.environment(), check=False)
+    done = subprocess.run(words, capture_output=True, env=environment(), check=False)
     assert done.returncode == 0, done.stderr.decode()
     same(trb.load(path), uninterrupted)
 
@@ -197,7 +198,7 @@ def test_workers_of_a_killed_study_end_and_the_next_start_cleans_up(tmp_path: Pa
     script, folder = tmp_path / "study_of_three.py", tmp_path / "study"
     script.write_text(STUDY)
     words = [sys.executable, "-P", str(script), str(folder)]
-    process = subprocess.Popen([*words, "1000.0"], stdout=subprocess.DEVNULL, env=runs.environment())
+    process = subprocess.Popen([*words, "1000.0"], stdout=subprocess.DEVNULL, env=environment())
     try:
         # both workers are in the middle of a case that would take hours
         until = time.monotonic() + 60.0

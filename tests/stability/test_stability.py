@@ -3,14 +3,9 @@
 from __future__ import annotations
 
 import random
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parent))
-
 from hard_pairs import PAIRS
 from hard_runs import judge
 from hard_scenes import HARD, Hard

@@ -2,27 +2,14 @@
 
 from __future__ import annotations
 
-import importlib.util
-import sys
 from collections.abc import Iterator
-from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import pytest
+from browser import Browser, executable
 
 import trbdyn as trb
 from trbdyn.results.result import Result
-
-
-def _module(name: str) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(f"trb_test_{name}", Path(__file__).parent / f"{name}.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture(scope="session")
@@ -42,9 +29,8 @@ def loaded_on_one_side() -> Result:
 
 @pytest.fixture(scope="session")
 def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
-    module = _module("browser")
-    if module.executable() is None:
+    if executable() is None:
         pytest.skip("no Chromium is installed: apt-get install chromium")
-    opened = module.Browser(tmp_path_factory.mktemp("browser"))
+    opened = Browser(tmp_path_factory.mktemp("browser"))
     yield opened
     opened.close()

@@ -1,0 +1,64 @@
+"""What tests of several folders share: on the path of every test (`pythonpath` in pyproject.toml)."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+import trbdyn as trb
+
+FRICTIONLESS = trb.Effects.standard().replace(
+    bodies="rollers",
+    gravity=False,
+    lubrication="full_film",
+    traction="none",
+    rolling_resistance=False,
+    rolling_pressure_force=False,
+)
+"""Rollers alone on films that nothing shears, with the damping that contacts have by default."""
+
+
+def tolerances(rtol: float) -> dict[str, float]:
+    """All tolerances in the proportions of the presets."""
+    parts = {"atol_position": 1e-5, "atol_angle": 1e-3, "atol_velocity": 0.1, "atol_spin": 10.0}
+    return {"rtol": rtol} | {name: part * rtol for name, part in parts.items()}
+
+
+def lost(result: trb.Result) -> float:
+    """Energy lost in a run (J)."""
+    return float(_sum(result, "loss_")[-1])
+
+
+def missing(result: trb.Result) -> float:
+    """Energy at the end that was not there at the start, not put in and not lost (J)."""
+    stored = result["kinetic_energy"] + result["elastic_energy"]
+    return float(stored[-1] - stored[0] - _sum(result, "work_")[-1]) + lost(result)
+
+
+def _sum(result: trb.Result, prefix: str) -> NDArray[np.float64]:
+    """Sum of the fields of a prefix, from the start of the run on."""
+    values = [np.asarray(result[field.name]) for field in result.fields if field.name.startswith(prefix)]
+    return np.sum([one - one[0] for one in values], axis=0)
+
+
+class Cut(Exception):
+    """Ends a run from within, as a bug in a user's callback would."""
+
+
+def cut_after(time: float) -> Callable[[trb.Simulation], None]:
+    """A callback that ends a run after a time (s)."""
+
+    def callback(sim: trb.Simulation) -> None:
+        if sim.time > time:
+            raise Cut
+
+    return callback
+
+
+def environment(**more: str) -> dict[str, str]:
+    """For a process that finds the package where this one does."""
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry), **more}
