@@ -28,7 +28,7 @@ RECORDS: Final = 60
 """Records of a run that are evaluated, at most; evenly spread over its window."""
 
 
-class Oil(TypedDict, total=False):
+class Options(TypedDict, total=False):
     """What `rating` takes beside its subject."""
 
     cleanliness: str | None
@@ -38,19 +38,19 @@ class Oil(TypedDict, total=False):
 
 
 @overload
-def rating(subject: Scene | Result, **oil: Unpack[Oil]) -> Rating: ...
+def rating(subject: Scene | Result, **options: Unpack[Options]) -> Rating: ...
 
 
 @overload
-def rating(subject: Assembly | AssemblyResult | ShaftEquilibrium, **oil: Unpack[Oil]) -> SystemRating: ...
+def rating(subject: Assembly | AssemblyResult | ShaftEquilibrium, **options: Unpack[Options]) -> SystemRating: ...
 
 
 @overload
-def rating(subject: Fit, **oil: Unpack[Oil]) -> Rating | SystemRating: ...
+def rating(subject: Fit, **options: Unpack[Options]) -> Rating | SystemRating: ...
 
 
 @overload
-def rating(subject: Spectrum, **oil: Unpack[Oil]) -> SpectrumRating | SystemRating: ...
+def rating(subject: Spectrum, **options: Unpack[Options]) -> SpectrumRating | SystemRating: ...
 
 
 def rating(
