@@ -115,7 +115,7 @@ def test_rollers_without_a_cage_are_judged_by_their_spacing() -> None:
 
 def test_a_radius_that_only_scatters_does_not_grow() -> None:
     """A radius that jumps between hardly anything and half of the play: its logarithm ends higher by chance."""
-    from trbdyn.results.observables.drift import _moving
+    from trbdyn.results.observables.slow_motion import _moving
 
     when = np.linspace(0.0, 4.0, 40)
     grown = 0

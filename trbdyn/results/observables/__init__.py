@@ -1,89 +1,67 @@
 """Observables: what engineers read from recorded motion. Functions of arrays alone, without files and simulations."""
 
-from trbdyn.results.observables.cage import (
-    CageMotion,
-    axis_distance,
-    cage_frequency,
-    cage_speed_ratio,
-    classify,
-    lean,
-    locus,
-    orbit_radius,
-    speed_deviation_ratio,
-    whirl_angle,
-    whirl_coherence,
-    whirl_frequency,
-    whirl_frequency_spectral,
-)
-from trbdyn.results.observables.drift import (
-    LIMITS,
-    Drift,
-    MotionSettling,
-    by_turns,
-    drift,
-    motion_settling,
-    whirl_amplitude,
-)
-from trbdyn.results.observables.energy import EnergyAudit, energy_audit, energy_balance, power_split, torque_split
-from trbdyn.results.observables.growth import Growth, whirl_growth
-from trbdyn.results.observables.rollers import (
-    PocketStatistics,
-    kinematic_slip,
-    pocket_statistics,
-    spacing,
-    spacing_std,
-    wrap_angle,
-)
-from trbdyn.results.observables.signals import FOLDED, Settling, high_share, peak_frequency, settling, spectrum, uniform
-from trbdyn.results.observables.uncertainty import MeanError, correlation_time, half_width, mean_error
+# ruff: isort: skip_file
+from __future__ import annotations
 
-__all__ = [
-    "FOLDED",
-    "LIMITS",
-    "CageMotion",
-    "Drift",
-    "EnergyAudit",
-    "Growth",
-    "MeanError",
-    "MotionSettling",
-    "PocketStatistics",
-    "Settling",
-    "axis_distance",
-    "by_turns",
-    "cage_frequency",
-    "cage_speed_ratio",
-    "classify",
-    "correlation_time",
-    "drift",
-    "energy_audit",
-    "energy_balance",
-    "half_width",
-    "high_share",
-    "kinematic_slip",
-    "lean",
-    "locus",
-    "mean_error",
-    "motion_settling",
-    "orbit_radius",
-    "peak_frequency",
-    "pocket_statistics",
-    "power_split",
-    "settling",
-    "spacing",
-    "spacing_std",
-    "spectrum",
-    "speed_deviation_ratio",
-    "torque_split",
-    "uniform",
-    "whirl_amplitude",
-    "whirl_angle",
-    "whirl_coherence",
-    "whirl_frequency",
-    "whirl_frequency_spectral",
-    "whirl_growth",
-    "wrap_angle",
-]
+from typing import TYPE_CHECKING
 
+from trbdyn.base.lazy import lazy_names
 
-def __dir__() -> list[str]:
-    return sorted(__all__)
+if TYPE_CHECKING:
+    from trbdyn.results.observables.cage import (
+        CageMotion as CageMotion,
+        axis_distance as axis_distance,
+        cage_frequency as cage_frequency,
+        cage_speed_ratio as cage_speed_ratio,
+        classify as classify,
+        lean as lean,
+        locus as locus,
+        orbit_radius as orbit_radius,
+        speed_deviation_ratio as speed_deviation_ratio,
+        whirl_angle as whirl_angle,
+        whirl_coherence as whirl_coherence,
+        whirl_frequency as whirl_frequency,
+        whirl_frequency_spectral as whirl_frequency_spectral,
+    )
+    from trbdyn.results.observables.slow_motion import (
+        LIMITS as LIMITS,
+        Drift as Drift,
+        MotionSettling as MotionSettling,
+        by_turns as by_turns,
+        drift as drift,
+        motion_settling as motion_settling,
+        whirl_amplitude as whirl_amplitude,
+    )
+    from trbdyn.results.observables.energy import (
+        EnergyAudit as EnergyAudit,
+        energy_audit as energy_audit,
+        energy_balance as energy_balance,
+        power_split as power_split,
+        torque_split as torque_split,
+    )
+    from trbdyn.results.observables.growth import Growth as Growth, whirl_growth as whirl_growth
+    from trbdyn.results.observables.rollers import (
+        PocketStatistics as PocketStatistics,
+        kinematic_slip as kinematic_slip,
+        pocket_statistics as pocket_statistics,
+        spacing as spacing,
+        spacing_std as spacing_std,
+        wrap_angle as wrap_angle,
+    )
+    from trbdyn.results.observables.signals import (
+        FOLDED as FOLDED,
+        Settling as Settling,
+        high_share as high_share,
+        peak_frequency as peak_frequency,
+        settling as settling,
+        spectrum as spectrum,
+        uniform as uniform,
+    )
+    from trbdyn.results.observables.uncertainty import (
+        MeanError as MeanError,
+        correlation_time as correlation_time,
+        half_width as half_width,
+        mean_error as mean_error,
+    )
+
+__all__, __getattr__, __dir__ = lazy_names(__name__, __file__)
