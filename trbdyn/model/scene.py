@@ -227,8 +227,7 @@ class Scene(TurningRings, Model):
             found["outer_speed_rpm"] = self.outer_speed_rpm
         if self.rotating_load is not None:
             found["rotating_load.load"] = self.rotating_load.load
-        if self.torque is not None:
-            found["torque"] = self.torque
+        found["torque"] = self.torque
         return {name: quantity for name, quantity in found.items() if quantity is not None}
 
     def quantities(self) -> dict[str, float | History]:
@@ -385,23 +384,20 @@ class Scene(TurningRings, Model):
             raise InputError.of(("effects", "oil_fill"), self.effects.oil_fill, limit)
 
     def _check_load(self) -> None:
-        loads: list[tuple[str, float | History]] = [("axial_load", self.axial_load), ("radial_load", self.radial_load)]
         x, y, z, *_ = self.ring_is_placed
         if self.displacement is not None and not (x or y or z):
             raise InputError.of("displacement", self.displacement, "must give one entry at least (m)")
-        for name, load in loads:
-            check_sign(name, load)
+        check_sign("axial_load", self.axial_load)
+        check_sign("radial_load", self.radial_load)
         if z and any(values_of(self.axial_load)):
             raise InputError.of(
                 "axial_load", self.axial_load, "must be 0 where displacement gives the axial position (N)"
             )
-        turning = self.rotating_load
-        if (x or y) and any(values_of(self.radial_load)):
-            limit = "must be 0 where displacement gives a radial position; set those entries None (N)"
-            raise InputError.of("radial_load", self.radial_load, limit)
-        if (x or y) and turning is not None and any(values_of(turning.load)):
-            limit = "must be 0 where displacement gives a radial position; set those entries None (N)"
-            raise InputError.of(("rotating_load", "load"), turning.load, limit)
+        turning = 0.0 if self.rotating_load is None else self.rotating_load.load
+        for path, load in ((("radial_load",), self.radial_load), (("rotating_load", "load"), turning)):
+            if (x or y) and any(values_of(load)):
+                limit = "must be 0 where displacement gives a radial position; set those entries None (N)"
+                raise InputError.of(path, load, limit)
         self._check_held()
         if self.unloaded == "rests" and z:
             raise InputError.of("unloaded", "rests", "must be 'refused' where displacement gives the axial position")
