@@ -367,11 +367,11 @@ def is_constant(quantity: float | History) -> bool:
     return len(set(values_of(quantity))) == 1
 
 
-def check_size(path: str | Path, quantity: float | History, most: float, symbol: str) -> None:
+def check_size(field: str | Path, quantity: float | History, most: float, symbol: str) -> None:
     """Refuse a quantity that is beyond a size at some time, in one direction or the other."""
     largest = max(values_of(quantity), key=abs)
     if abs(largest) > most:
-        raise InputError.of(path, largest, f"must be from {-most:.4g} to {most:.4g} ({symbol})")
+        raise InputError.of(field, largest, f"must be from {-most:.4g} to {most:.4g} ({symbol})")
 
 
 def settled_time(quantities: Sequence[float | History], start: float) -> float:

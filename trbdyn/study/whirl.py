@@ -320,7 +320,7 @@ class CageRuns:
         shape = [len(one[1] if isinstance(one, tuple) else one) for one in places.values()]
         made = variables([self.rows[point] for point in points], ABOUT, list(places), shape)
         data = xarray.Dataset(made, places, {"bearing": self.subject.part.bearing.name})
-        return data.rename(settled="decided")
+        return data.rename_vars(settled="decided")
 
 
 def _row(found: xarray.Dataset) -> dict[str, Any]:
