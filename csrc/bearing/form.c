@@ -24,13 +24,11 @@ int trb_form_at(const trb_form *form, int surface, double angle, int node, doubl
     if (p->surface != surface) continue;
     const double at = past(p, angle);
     if (!(at <= p->length)) continue;
-    const int     k = (int)fmin(at / p->step, p->n - 2);
-    const double  h = p->step, s = at / h - k, s2 = s * s, s3 = s2 * s;
-    const double *a = p->rows + (size_t)k * row + node, *b = a + row;
-    const double  slope_a = a[form->n_nodes], slope_b = b[form->n_nodes];
-    /* cubic Hermite */
-    *depth += (2 * s3 - 3 * s2 + 1) * a[0] + (s3 - 2 * s2 + s) * h * slope_a + (3 * s2 - 2 * s3) * b[0] + (s3 - s2) * h * slope_b;
-    *slope += (6 * s2 - 6 * s) / h * (a[0] - b[0]) + (3 * s2 - 4 * s + 1) * slope_a + (3 * s2 - 2 * s) * slope_b;
+    const int       k = (int)fmin(at / p->step, p->n - 2);
+    const double   *a = p->rows + (size_t)k * row + node, *b = a + row;
+    const trb_curve curve = trb_hermite(at / p->step - k, p->step, a[0], a[form->n_nodes], b[0], b[form->n_nodes]);
+    *depth += curve.value;
+    *slope += curve.slope;
     found = 1;
   }
   return found;

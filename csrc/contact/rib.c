@@ -1,10 +1,11 @@
-/* A roller's spherical end on a conical rib of a ring, as the large end on the back-face rib: one point of maximum interference
- * (docs/theory/contacts.md#large-end-on-the-back-face-rib). */
+/* Ends of rollers on ribs. First a spherical end on a conical rib of a ring, as the large end on the back-face rib: one point of maximum
+ * interference (docs/theory/contacts.md#large-end-on-the-back-face-rib). */
 #include <math.h>
 
+#include "contact/friction.h"
 #include "contact/kernels.h"
 #include "contact/pair.h"
-#include "laws/smooth.h"
+#include "surface/circle.h"
 
 static const trb_rib *rib_of(const trb_pair *pair) { return pair->own; }
 
@@ -105,3 +106,98 @@ const trb_pair_kind trb_pair_rib = {.name = "spherical end on a conical rib",
                                     .arms = arms_of,
                                     .depth = depth_of,
                                     .look = look_at};
+
+/* Small end on the plane front rib of the inner ring of a tapered bearing (docs/theory/contacts.md#small-end-on-the-front-rib). Two nearly parallel
+ * faces have no unique deepest point. The rib's face is bounded by two circles about the ring's axis; each meets the roller's end plane in one
+ * point, the deepest of that circle, which moves smoothly with the pose. The circles carry half the stiffness each. The force is along the
+ * roller's axis, the gradient of an energy. */
+static void edge_on_end(const trb_model *m, const trb_roller_pose *r, const trb_ring_pose *ring, int edge, const trb_pair *pair, int row,
+                        trb_counters *counters, trb_loads *to, trb_contact *c)
+{
+  const trb_vec3   a = r->frame.a, end = trb_axpy(r->x, m->surfaces.small_end, a);
+  const trb_circle circle = ((const trb_circle *)pair->own)[edge];
+
+  const trb_circle_meeting meeting =
+      trb_circle_on_plane(trb_axpy(ring->centre, circle.place, ring->axis), ring->axis, circle.radius, end, a);
+  const double d = meeting.depth;
+  counters->front_rib_tests++;
+  c->interference = edge == 0 ? d : trb_max(d, c->interference);
+  to->margin[row] = trb_min(to->margin[row], fabs(d));
+  if (!(d > 0.0)) return;
+  counters->front_rib_contacts++;
+  const trb_vec3  point = trb_circle_deepest(&meeting, circle.radius), arm = trb_sub(point, r->x), ring_arm = trb_sub(point, ring->centre);
+  const trb_vec3  normal = trb_scale(-1.0, a);
+  const trb_touch touch =
+      trb_touching(trb_add(r->v, trb_cross(r->omega, arm)), trb_add(ring->velocity, trb_cross(ring->omega, ring_arm)), normal);
+  const double   elastic = 0.5 * m->params.end_stiffness * d * sqrt(d);
+  trb_load       load = {.elastic = 0.4 * elastic * d};
+  const trb_push push = trb_push_at(m, &touch, normal, elastic, trb_contact_damping(m, d), 1.0, load.lost);
+  const trb_vec3 torque = trb_cross(ring_arm, push.force);
+  load.on_a = (trb_wrench){push.force, trb_cross(arm, push.force)};
+  load.on_b = (trb_wrench){trb_scale(-1.0, push.force), trb_scale(-1.0, torque)};
+  load.torque[TRB_BY_SLIDING] = -trb_dot(torque, ring->axis);
+  trb_add_load(pair, &load, to);
+  c->load += push.load;
+  c->friction += push.load * push.mu;
+  c->friction_coefficient = push.mu;
+  c->sliding_speed = touch.speed;
+}
+
+static void evaluate_edges(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
+                           trb_detail *detail)
+{
+  for (int i = 0; i < batch->n; i++)
+    for (int k = 0; k < at->n; k++) {
+      const int   j = at->chosen[k];
+      trb_contact c = {0};
+      for (int edge = 0; edge < 2; edge++)
+        edge_on_end(m, &at->rollers[j], &trb_pair_ring(batch->pairs[i], at)[j], edge, batch->pairs[i], batch->index[i], &work->counters,
+                    &loads[j], &c);
+      if (detail != NULL) trb_pair_contacts(m, batch->pairs[i], detail)[j] = c;
+    }
+}
+
+/* The interference is that of the deepest point of a circle beyond the end, and the way of this point along the roller's axis for a turn is
+ * its distance from the roller's centre of mass. A turn of the roller against the ring moves it round the circle: by less than half a radian as
+ * long as all angles together are below a third of that between both axes, which `room` says, and anywhere beyond. */
+static void arms_of_edges(const trb_model *m, const trb_pair *pair, trb_arms *arms)
+{
+  const trb_circle *edges = pair->own;
+  double            arm = 0.0, near = 0.0, turn = 0.0;
+  for (int i = 0; i < 2; i++) {
+    const double along = fabs(edges[i].place) + fabs(m->geometry.roller_mass_offset) + trb_bound_play(m);
+    const double centre = m->geometry.roller_centre_radius, radius = edges[i].radius;
+    arm = fmax(arm, hypot(along, centre + radius));
+    near = fmax(near, hypot(along, centre - radius) + 0.5 * radius);
+    turn = fmax(turn, hypot(along, radius));
+  }
+  const double room = arm * fabs(m->axis_sine) / 3.0;
+  near = fmin(near + room, arm);
+  *arms = (trb_arms){.roller = {1.0, 0.0, 1.0, arm, arm},
+                     .body = {1.0, 1.0, 1.0, 1.01 * turn, 1.01 * turn, 0.0},
+                     .skew = near / arm,
+                     .tilt = near / arm,
+                     .room = room,
+                     .axial = arm};
+}
+
+static void look_at_edges(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
+                          trb_detail *detail, double share)
+{
+  evaluate_edges(m, at, batch, work, loads, detail);
+  for (int k = 0; k < at->n * batch->n; k++) {
+    trb_contact *c = &trb_pair_contacts(m, batch->pairs[k % batch->n], detail)[at->chosen[k / batch->n]];
+    c->way = c->interference > 0.0 ? -1.0 : trb_look_way(c, share);
+    c->speed = INFINITY;
+  }
+}
+
+/* Its own parameters: two circles (surface/circle.h), the edges of the face. */
+const trb_pair_kind trb_pair_front_rib = {.name = "end on a plane rib",
+                                          .shape = {TRB_SHAPE_PLANE, TRB_SHAPE_CIRCLES},
+                                          .pace = TRB_PACE_SLOW,
+                                          .mechanisms = TRB_LOSES(TRB_BY_SLIDING) | TRB_LOSES(TRB_BY_DAMPING),
+                                          .contact = TRB_CONTACT_EDGE,
+                                          .evaluate = evaluate_edges,
+                                          .arms = arms_of_edges,
+                                          .look = look_at_edges};

@@ -25,4 +25,16 @@ static inline double trb_smooth_step(double x, double low, double high)
   return t * t * (3.0 - 2.0 * t);
 }
 
+/* Value and slope at the fraction s of an interval of length h of the cubic with the values a, b and the slopes da, db at its ends (Hermite). */
+typedef struct trb_curve {
+  double value, slope;
+} trb_curve;
+
+static inline trb_curve trb_hermite(double s, double h, double a, double da, double b, double db)
+{
+  const double s2 = s * s, s3 = s2 * s;
+  return (trb_curve){(2 * s3 - 3 * s2 + 1) * a + (s3 - 2 * s2 + s) * h * da + (3 * s2 - 2 * s3) * b + (s3 - s2) * h * db,
+                     (6 * s2 - 6 * s) / h * (a - b) + (3 * s2 - 4 * s + 1) * da + (3 * s2 - 2 * s) * db};
+}
+
 #endif

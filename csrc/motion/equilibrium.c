@@ -110,13 +110,19 @@ static double keep_in_the_middle(double z, double *force)
   return 0.5 * stiffness * z * z;
 }
 
+/* Angular velocity of the rollers' orbits, rad/s. */
+static double orbit_of(const trb_model *m, const trb_equilibrium *e)
+{
+  return m->geometry.cage_speed_ratio * (e->shaft_speed - e->carried_speed) + e->carried_speed;
+}
+
 /* Generalised forces on rollers and ring at a place; gives the potential. */
 static double evaluate(solver *s, const double *rollers, const double *displacement, double *forces, double *ring)
 {
   const trb_model    *m = s->m;
   const trb_geometry *g = &m->geometry;
   const trb_rolling   rolling = trb_pure_rolling(m, s->e->shaft_speed - s->e->carried_speed, s->e->carried_speed);
-  const double        orbit = g->cage_speed_ratio * (s->e->shaft_speed - s->e->carried_speed) + s->e->carried_speed;
+  const double        orbit = orbit_of(s->m, s->e);
   /* gyroscopic moment: rate of the angular momentum of a roller that spins and orbits */
   const double gyro = orbit * cos(g->roller_axis_angle) * g->roller_inertia_transverse * rolling.omega_n -
                       rolling.omega_n * g->roller_inertia_axial * rolling.omega_a;
@@ -199,7 +205,7 @@ static void put_column(solver *s, int of_ring, int c, double step, const double 
 static void choose_steps(solver *s)
 {
   const trb_geometry *g = &s->m->geometry;
-  const double        orbit = g->cage_speed_ratio * (s->e->shaft_speed - s->e->carried_speed) + s->e->carried_speed;
+  const double        orbit = orbit_of(s->m, s->e);
   s->ring_fine = 0.0;
   for (int j = 0; j < s->m->n_rollers; j++) {
     s->fine[j] = fineness(s->elastic[j], g->roller_mass * orbit * orbit * g->roller_centre_radius);
@@ -273,6 +279,16 @@ static double usual_stiffness(const trb_model *m, int coordinate)
   return coordinate < 2 ? TRB_USUAL_CONTACT : TRB_USUAL_CONTACT * arm * arm / 3.0;
 }
 
+/* Rows of a roller's stiffness with what the ring does to it, `width` apart, with a share of the stiffness of usual contacts added. */
+static void fill_rows(const solver *s, int roller, double damping, int width, double *a)
+{
+  for (int i = 0; i < N; i++) {
+    for (int c = 0; c < N; c++) a[width * i + c] = s->own[N * N * roller + N * i + c];
+    for (int c = 0; c < R; c++) a[width * i + N + c] = s->to_ring[N * R * roller + R * i + c];
+    a[width * i + i] += damping * usual_stiffness(s->m, i);
+  }
+}
+
 /* Damped Newton step: (K + damping D) step = force, rollers eliminated onto the ring. D is the stiffness of a typical contact. */
 static int newton_step(solver *s, double damping, double *step_rollers, double *step_ring)
 {
@@ -290,10 +306,8 @@ static int newton_step(solver *s, double damping, double *step_rollers, double *
     double        a[N * WIDTH];
     double       *solved = s->solved + (size_t)j * N * (R + 1);
     const double *from_ring = s->from_ring + (size_t)j * N * R;
+    fill_rows(s, j, damping, WIDTH, a);
     for (int i = 0; i < N; i++) {
-      for (int c = 0; c < N; c++) a[WIDTH * i + c] = s->own[N * N * j + N * i + c];
-      a[WIDTH * i + i] += damping * usual_stiffness(s->m, i);
-      for (int c = 0; c < R; c++) a[WIDTH * i + N + c] = s->to_ring[N * R * j + R * i + c];
       a[WIDTH * i + N + R] = s->forces[N * j + i];
       if (s->held[i]) hold_row(a + (size_t)WIDTH * i, WIDTH, i);
     }
@@ -461,10 +475,8 @@ static trb_status condense(solver *s, trb_message *message)
   for (int j = 0; j < s->m->n_rollers; j++) {
     const double *from_ring = s->from_ring + (size_t)N * R * j;
     double        a[N * WIDTH];
+    fill_rows(s, j, TRB_LOOSE_SHARE, WIDTH, a);
     for (int i = 0; i < N; i++) {
-      for (int c = 0; c < N; c++) a[WIDTH * i + c] = s->own[N * N * j + N * i + c];
-      for (int c = 0; c < R; c++) a[WIDTH * i + N + c] = s->to_ring[N * R * j + R * i + c];
-      a[WIDTH * i + i] += TRB_LOOSE_SHARE * usual_stiffness(s->m, i);
       const int by_friction = i == 1 && trb_has_cylinders(s->m) && a[WIDTH * i + i] < TRB_RIB_SHARE * TRB_USUAL_CONTACT;
       if (s->held[i] || by_friction) hold_row(a + (size_t)WIDTH * i, WIDTH, i);
     }
@@ -486,7 +498,7 @@ static void place_light_rollers(solver *s, double *step_rollers, double *step_ri
 {
   trb_equilibrium    *e = s->e;
   const trb_geometry *g = &s->m->geometry;
-  const double        orbit = g->cage_speed_ratio * (e->shaft_speed - e->carried_speed) + e->carried_speed;
+  const double        orbit = orbit_of(s->m, e);
   const double        force = g->roller_mass * orbit * orbit * g->roller_centre_radius;
   const double        shaft = e->shaft_speed, carried = e->carried_speed;
   int                 fixed[R];

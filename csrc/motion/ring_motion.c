@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "body/ring.h"
+#include "laws/smooth.h"
 
 static const double *row_of(const trb_motion *motion, int i) { return motion->table + (size_t)i * TRB_MOTION_COLUMNS; }
 
@@ -130,22 +131,6 @@ static double time_in_table(const trb_motion *motion, double time, double *turns
   return fmin(fmax(inside, begin), last_time(motion));
 }
 
-typedef struct hermite {
-  double value, rate;
-} hermite;
-
-/* Value and rate of a channel in the interval that starts at knot row a, at the fraction s of its length h. */
-static hermite channel_at(const double *a, int channel, double s, double h)
-{
-  const double *b = a + TRB_MOTION_COLUMNS;
-  const int     c = 1 + 2 * channel;
-  const double  s2 = s * s, s3 = s2 * s;
-  hermite       out;
-  out.value = (2 * s3 - 3 * s2 + 1) * a[c] + (s3 - 2 * s2 + s) * h * a[c + 1] + (3 * s2 - 2 * s3) * b[c] + (s3 - s2) * h * b[c + 1];
-  out.rate = (6 * s2 - 6 * s) / h * (a[c] - b[c]) + (3 * s2 - 4 * s + 1) * a[c + 1] + (3 * s2 - 2 * s) * b[c + 1];
-  return out;
-}
-
 /* Integral of a channel from the start of the interval to the fraction s. */
 static double channel_integral(const double *a, int channel, double s, double h)
 {
@@ -232,7 +217,7 @@ int trb_motion_changes(const trb_motion *motion, double from, double to)
 int trb_motion_under_way(const trb_motion *motion, double time) { return trb_motion_changes(motion, time, time); }
 
 /* Channels at a time, and the angles that shaft and outer ring have turned by. */
-static void channels_at(const trb_motion *motion, double time, hermite c[TRB_N_CHANNELS], double angle[N_TURNING])
+static void channels_at(const trb_motion *motion, double time, trb_curve c[TRB_N_CHANNELS], double angle[N_TURNING])
 {
   double       turns;
   const int    last = motion->n - 1;
@@ -240,15 +225,15 @@ static void channels_at(const trb_motion *motion, double time, hermite c[TRB_N_C
   if (inside <= first_time(motion) || inside >= last_time(motion) || last == 0) {
     const int     late = inside >= last_time(motion);
     const double *row = row_of(motion, late ? last : 0);
-    for (int i = 0; i < TRB_N_CHANNELS; i++) c[i] = (hermite){row[1 + 2 * i], inside == row[0] ? row[2 + 2 * i] : 0.0};
+    for (int i = 0; i < TRB_N_CHANNELS; i++) c[i] = (trb_curve){row[1 + 2 * i], inside == row[0] ? row[2 + 2 * i] : 0.0};
     for (int k = 0; k < N_TURNING; k++)
       angle[k] = angle_at(motion, late ? last : 0)[k] + row[1 + 2 * turning[k]] * (inside - row[0]) + turns * turn_of_tail(motion, k);
     return;
   }
   const int     low = interval_of(motion, inside);
-  const double *a = row_of(motion, low);
+  const double *a = row_of(motion, low), *b = a + TRB_MOTION_COLUMNS;
   const double  h = a[TRB_MOTION_COLUMNS] - a[0], s = (inside - a[0]) / h;
-  for (int i = 0; i < TRB_N_CHANNELS; i++) c[i] = channel_at(a, i, s, h);
+  for (int i = 0; i < TRB_N_CHANNELS; i++) c[i] = trb_hermite(s, h, a[1 + 2 * i], a[2 + 2 * i], b[1 + 2 * i], b[2 + 2 * i]);
   for (int k = 0; k < N_TURNING; k++)
     angle[k] = angle_at(motion, low)[k] + channel_integral(a, turning[k], s, h) + turns * turn_of_tail(motion, k);
 }
@@ -256,7 +241,7 @@ static void channels_at(const trb_motion *motion, double time, hermite c[TRB_N_C
 void trb_motion_set_angles(trb_motion *motion, double time, double shaft, double carried)
 {
   const double wanted[N_TURNING] = {shaft, carried};
-  hermite      c[TRB_N_CHANNELS];
+  trb_curve    c[TRB_N_CHANNELS];
   double       angle[N_TURNING];
   channels_at(motion, time, c, angle);
   for (int i = 0; i < motion->n; i++)
@@ -265,24 +250,24 @@ void trb_motion_set_angles(trb_motion *motion, double time, double shaft, double
 
 void trb_motion_at(const trb_motion *motion, const trb_model *m, double time, trb_drive *drive)
 {
-  hermite c[TRB_N_CHANNELS];
-  double  angle[N_TURNING];
+  trb_curve c[TRB_N_CHANNELS];
+  double    angle[N_TURNING];
   channels_at(motion, time, c, angle);
-  const double  ratio = m->geometry.cage_speed_ratio;
-  const hermite carried = c[TRB_CHANNEL_outer_speed];
+  const double    ratio = m->geometry.cage_speed_ratio;
+  const trb_curve carried = c[TRB_CHANNEL_outer_speed];
   drive->shaft_angle = angle[0];
   drive->carried_angle = angle[1];
   drive->rolling_angle = angle[0] - angle[1];
   drive->time = time;
   drive->shaft_speed = c[TRB_CHANNEL_shaft_speed].value;
-  drive->shaft_rate = c[TRB_CHANNEL_shaft_speed].rate;
+  drive->shaft_rate = c[TRB_CHANNEL_shaft_speed].slope;
   drive->carried_speed = carried.value;
-  drive->carried_rate = carried.rate;
+  drive->carried_rate = carried.slope;
   drive->rolling_speed = drive->shaft_speed - carried.value;
-  drive->rolling_rate = drive->shaft_rate - carried.rate;
+  drive->rolling_rate = drive->shaft_rate - carried.slope;
   drive->frame_angle = ratio * (angle[0] - angle[1]) + angle[1];
   drive->frame_speed = ratio * drive->rolling_speed + carried.value;
-  drive->frame_rate = ratio * drive->rolling_rate + carried.rate;
+  drive->frame_rate = ratio * drive->rolling_rate + carried.slope;
   drive->cosine = cos(drive->frame_angle);
   drive->sine = sin(drive->frame_angle);
   drive->load.force = trb_v(c[TRB_CHANNEL_force_x].value, c[TRB_CHANNEL_force_y].value, c[TRB_CHANNEL_force_z].value);
@@ -293,8 +278,8 @@ void trb_motion_at(const trb_motion *motion, const trb_model *m, double time, tr
   drive->housing_load.moment = trb_v(c[TRB_CHANNEL_housing_moment_x].value, c[TRB_CHANNEL_housing_moment_y].value, 0.0);
   drive->gravity = trb_v(c[TRB_CHANNEL_gravity_x].value, c[TRB_CHANNEL_gravity_y].value, c[TRB_CHANNEL_gravity_z].value);
   const double rotation[2] = {c[TRB_CHANNEL_rotation_x].value, c[TRB_CHANNEL_rotation_y].value};
-  const double rate[2] = {c[TRB_CHANNEL_rotation_x].rate, c[TRB_CHANNEL_rotation_y].rate};
+  const double rate[2] = {c[TRB_CHANNEL_rotation_x].slope, c[TRB_CHANNEL_rotation_y].slope};
   trb_drive_place(m, trb_v(c[TRB_CHANNEL_displacement_x].value, c[TRB_CHANNEL_displacement_y].value, c[TRB_CHANNEL_displacement_z].value),
-                  trb_v(c[TRB_CHANNEL_displacement_x].rate, c[TRB_CHANNEL_displacement_y].rate, c[TRB_CHANNEL_displacement_z].rate),
+                  trb_v(c[TRB_CHANNEL_displacement_x].slope, c[TRB_CHANNEL_displacement_y].slope, c[TRB_CHANNEL_displacement_z].slope),
                   rotation, rate, drive->shaft_speed, drive);
 }

@@ -40,11 +40,7 @@ static int put_detail(const trb_system *system, const trb_detail *detail, PyObje
   const double *pocket[] = {detail->pocket_force, detail->pocket_friction, detail->pocket_interference};
   const char   *keys[] = {"pocket_load", "pocket_friction", "pocket_interference"};
   for (int f = 0; f < 3; f++) {
-    npy_intp  shape[2] = {m->n_rollers, m->n_slots};
-    PyObject *array = PyArray_SimpleNew(2, shape, NPY_DOUBLE);
-    if (array == NULL) return -1;
-    memcpy(PyArray_DATA((PyArrayObject *)array), pocket[f], (size_t)(m->n_rollers * m->n_slots) * sizeof(double));
-    if (trb_put(out, keys[f], array) != 0) return -1;
+    if (trb_put(out, keys[f], trb_matrix(pocket[f], m->n_rollers, m->n_slots)) != 0) return -1;
   }
   return 0;
 }
@@ -67,8 +63,7 @@ static int put_loads(const trb_model *m, const trb_loads *loads, PyObject *out)
                {"elastic_energy", offsetof(trb_loads, elastic), 1},
                {"power", offsetof(trb_loads, power), m->n_losses}};
   for (size_t p = 0; p < sizeof parts / sizeof parts[0]; p++) {
-    npy_intp  shape[2] = {m->n_rollers, parts[p].width};
-    PyObject *array = PyArray_SimpleNew(2, shape, NPY_DOUBLE);
+    PyObject *array = trb_matrix(NULL, m->n_rollers, parts[p].width);
     if (array == NULL) return -1;
     for (int j = 0; j < m->n_rollers; j++)
       memcpy((double *)PyArray_DATA((PyArrayObject *)array) + j * parts[p].width, (const char *)&loads[j] + parts[p].offset,

@@ -39,6 +39,8 @@ extern PyObject *trb_step_error;
 PyArrayObject *trb_array(PyObject *object, int ndim, const char *name);
 /* A new float64 vector with a copy of values (which may be NULL: zeros). */
 PyObject *trb_vector(const double *values, npy_intp n);
+/* A new float64 matrix with a copy of values (which may be NULL: not set). */
+PyObject *trb_matrix(const double *values, npy_intp rows, npy_intp width);
 /* Put a new reference under a key and give it up; -1 on error. */
 int trb_put(PyObject *dictionary, const char *key, PyObject *value);
 /* Function of the module: length of the state of bearings that are simulated together, and the layout of each one's part. */

@@ -10,62 +10,63 @@
 #include "motion/record.h"
 #include "system/assembly.h"
 
+/* Arguments of a model, by number: arrays of so many dimensions. */
+enum { PARAMS, DEVIATION, FACES, MODES, FORM, DROPS, N_ARRAYS };
+
+/* The system of a model of these arrays, which may be NULL from MODES on. */
+static trb_status make_system(PyArrayObject *const *a, trb_model **model, trb_system **system, trb_message *message)
+{
+#define ROWS(array) PyArray_DATA(a[array]), (int)PyArray_DIM(a[array], 0)
+#define TABLE_OF(array) ROWS(array), (int)PyArray_DIM(a[array], 1), message
+  if (PyArray_DIM(a[PARAMS], 0) != TRB_N_PARAMS)
+    return trb_fail(message, TRB_ERR_INPUT, "params: %d values needed, %d given", TRB_N_PARAMS, (int)PyArray_DIM(a[PARAMS], 0));
+  if (PyArray_DIM(a[FACES], 0) > 0 && PyArray_DIM(a[FACES], 1) != TRB_N_FACE_COLUMNS)
+    return trb_fail(message, TRB_ERR_INPUT, "faces: %d columns needed, %d given", TRB_N_FACE_COLUMNS, (int)PyArray_DIM(a[FACES], 1));
+  trb_status status = trb_model_create(PyArray_DATA(a[PARAMS]), ROWS(DEVIATION), ROWS(FACES), model, message);
+  if (status == TRB_OK && a[MODES] != NULL) status = trb_model_set_modes(*model, TABLE_OF(MODES));
+  if (status == TRB_OK && a[FORM] != NULL) status = trb_model_set_form(*model, TABLE_OF(FORM));
+  if (status == TRB_OK && a[DROPS] != NULL) status = trb_model_set_drops(*model, TABLE_OF(DROPS));
+#undef ROWS
+#undef TABLE_OF
+  return status == TRB_OK ? trb_system_tapered(*model, system, message) : status;
+}
+
 static PyObject *model_new(PyTypeObject *type, PyObject *args, PyObject *keywords)
 {
-  static char *names[] = {"params", "diameter_deviation", "faces", "instruction_set", "modes", "form", "drops", NULL};
-  PyObject    *params_object, *deviation_object, *faces_object, *modes_object = NULL, *form_object = NULL, *drops_object = NULL;
-  const char  *variant = "";
-  if (!PyArg_ParseTupleAndKeywords(args, keywords, "OOO|sOOO", names, &params_object, &deviation_object, &faces_object, &variant,
-                                   &modes_object, &form_object, &drops_object))
+  static char     *names[] = {"params", "diameter_deviation", "faces", "instruction_set", "modes", "form", "drops", NULL};
+  static const int dimensions[N_ARRAYS] = {1, 1, 2, 2, 2, 2};
+  PyObject        *given[N_ARRAYS] = {NULL};
+  PyArrayObject   *arrays[N_ARRAYS] = {NULL};
+  const char      *variant = "";
+  if (!PyArg_ParseTupleAndKeywords(args, keywords, "OOO|sOOO", names, &given[PARAMS], &given[DEVIATION], &given[FACES], &variant,
+                                   &given[MODES], &given[FORM], &given[DROPS]))
     return NULL;
-  PyArrayObject *params = trb_array(params_object, 1, "params"), *deviation = NULL, *faces = NULL, *modes = NULL, *form = NULL,
-                *drops = NULL;
   model_object  *self = NULL;
   trb_model     *model = NULL;
   trb_system    *system = NULL;
   trb_workspace *work = NULL;
   trb_message    message = {TRB_OK, ""};
   trb_status     status = TRB_OK;
-  if (params != NULL) deviation = trb_array(deviation_object, 1, "diameter_deviation");
-  if (deviation != NULL) faces = trb_array(faces_object, 2, "faces");
-  if (faces != NULL && modes_object != NULL && (modes = trb_array(modes_object, 2, "modes")) == NULL) Py_CLEAR(faces);
-  if (faces != NULL && form_object != NULL && (form = trb_array(form_object, 2, "form")) == NULL) Py_CLEAR(faces);
-  if (faces != NULL && drops_object != NULL && (drops = trb_array(drops_object, 2, "drops")) == NULL) Py_CLEAR(faces);
-  if (faces != NULL) {
-    if (PyArray_DIM(params, 0) != TRB_N_PARAMS)
-      status = trb_fail(&message, TRB_ERR_INPUT, "params: %d values needed, %d given", TRB_N_PARAMS, (int)PyArray_DIM(params, 0));
-    else if (PyArray_DIM(faces, 0) > 0 && PyArray_DIM(faces, 1) != TRB_N_FACE_COLUMNS)
-      status = trb_fail(&message, TRB_ERR_INPUT, "faces: %d columns needed, %d given", TRB_N_FACE_COLUMNS, (int)PyArray_DIM(faces, 1));
-    else
-      status = trb_model_create(PyArray_DATA(params), PyArray_DATA(deviation), (int)PyArray_DIM(deviation, 0), PyArray_DATA(faces),
-                                (int)PyArray_DIM(faces, 0), &model, &message);
-    if (status == TRB_OK && modes != NULL)
-      status = trb_model_set_modes(model, PyArray_DATA(modes), (int)PyArray_DIM(modes, 0), (int)PyArray_DIM(modes, 1), &message);
-    if (status == TRB_OK && form != NULL)
-      status = trb_model_set_form(model, PyArray_DATA(form), (int)PyArray_DIM(form, 0), (int)PyArray_DIM(form, 1), &message);
-    if (status == TRB_OK && drops != NULL)
-      status = trb_model_set_drops(model, PyArray_DATA(drops), (int)PyArray_DIM(drops, 0), (int)PyArray_DIM(drops, 1), &message);
+  int            complete = 1;
+  for (int i = 0; i < N_ARRAYS && complete; i++)
+    if (given[i] != NULL) complete = (arrays[i] = trb_array(given[i], dimensions[i], names[i < MODES ? i : i + 1])) != NULL;
+  if (complete) {
+    status = make_system(arrays, &model, &system, &message);
     /* a workspace tells whether the variant runs, and which one "" stands for */
-    if (status == TRB_OK) status = trb_system_tapered(model, &system, &message);
     if (status == TRB_OK) status = trb_workspace_create(system->pairs, system->n_pairs, variant, &work, &message);
     if (status == TRB_OK) self = (model_object *)PyType_GenericAlloc(type, 0);
-    if (self != NULL) {
-      self->model = model;
-      self->system = system;
-      (void)PyOS_snprintf(self->variant, sizeof self->variant, "%s", trb_kernel_variants[work->variant].name);
-    } else {
-      trb_system_free(system);
-      trb_model_free(model);
-      if (status != TRB_OK) (void)trb_raise(status, &message);
-    }
-    trb_workspace_free(work);
+    if (status != TRB_OK) (void)trb_raise(status, &message);
   }
-  Py_XDECREF((PyObject *)params);
-  Py_XDECREF((PyObject *)deviation);
-  Py_XDECREF((PyObject *)faces);
-  Py_XDECREF((PyObject *)modes);
-  Py_XDECREF((PyObject *)form);
-  Py_XDECREF((PyObject *)drops);
+  if (self != NULL) {
+    self->model = model;
+    self->system = system;
+    (void)PyOS_snprintf(self->variant, sizeof self->variant, "%s", trb_kernel_variants[work->variant].name);
+  } else {
+    trb_system_free(system);
+    trb_model_free(model);
+  }
+  trb_workspace_free(work);
+  for (int i = 0; i < N_ARRAYS; i++) Py_XDECREF((PyObject *)arrays[i]);
   return (PyObject *)self;
 }
 
@@ -224,14 +225,6 @@ static int read_doubles(PyObject *object, const char *name, npy_intp n, double *
   return 0;
 }
 
-static PyObject *columns(const double *values, int rows, int width)
-{
-  npy_intp  shape[2] = {rows, width};
-  PyObject *array = PyArray_SimpleNew(2, shape, NPY_DOUBLE);
-  if (array != NULL) memcpy(PyArray_DATA((PyArrayObject *)array), values, (size_t)rows * (size_t)width * sizeof(double));
-  return array;
-}
-
 static PyObject *equilibrium(PyObject *self, PyObject *args, PyObject *keywords)
 {
   static char     *names[] = {"load",  "fixed",     "displacement", "shaft_speed", "angles", "rollers",
@@ -273,10 +266,10 @@ static PyObject *equilibrium(PyObject *self, PyObject *args, PyObject *keywords)
     else
       out = Py_BuildValue("{s:N,s:N,s:N,s:d,s:N,s:N,s:d,s:i,s:N,s:N}", "displacement", trb_vector(e.displacement, TRB_RING_FREEDOMS),
                           "reaction", trb_vector(e.reaction, TRB_RING_FREEDOMS), "on_other", trb_vector(e.on_other, TRB_RING_FREEDOMS),
-                          "energy", e.energy, "rollers", columns(e.rollers, m->n_rollers, TRB_ROLLER_FREEDOMS), "loads",
-                          columns(loads, m->n_rollers, TRB_EQUILIBRIUM_LOADS), "residual", e.residual, "iterations", e.iterations,
-                          "stiffness", columns(stiffness, TRB_RING_FREEDOMS, TRB_RING_FREEDOMS), "follow",
-                          columns(follow, m->n_rollers, TRB_ROLLER_FREEDOMS * TRB_RING_FREEDOMS));
+                          "energy", e.energy, "rollers", trb_matrix(e.rollers, m->n_rollers, TRB_ROLLER_FREEDOMS), "loads",
+                          trb_matrix(loads, m->n_rollers, TRB_EQUILIBRIUM_LOADS), "residual", e.residual, "iterations", e.iterations,
+                          "stiffness", trb_matrix(stiffness, TRB_RING_FREEDOMS, TRB_RING_FREEDOMS), "follow",
+                          trb_matrix(follow, m->n_rollers, TRB_ROLLER_FREEDOMS * TRB_RING_FREEDOMS));
   }
   PyMem_Free(block);
   return out;

@@ -51,6 +51,14 @@ PyObject *trb_vector(const double *values, npy_intp n)
   return array;
 }
 
+PyObject *trb_matrix(const double *values, npy_intp rows, npy_intp width)
+{
+  npy_intp  shape[2] = {rows, width};
+  PyObject *array = PyArray_SimpleNew(2, shape, NPY_DOUBLE);
+  if (array != NULL && values != NULL) memcpy(PyArray_DATA((PyArrayObject *)array), values, (size_t)(rows * width) * sizeof *values);
+  return array;
+}
+
 int trb_put(PyObject *dictionary, const char *key, PyObject *value)
 {
   if (value == NULL) return -1;

@@ -21,6 +21,9 @@ PyArrayObject *trb_python_state_array(const simulation_object *self, PyObject *o
 int  trb_python_enter(simulation_object *self, int stepping);
 void trb_python_leave(simulation_object *self, int stepping);
 
+/* The same at the end of a call: None, or NULL with the error of a status. */
+PyObject *trb_python_done(simulation_object *self, int stepping, trb_status status, const trb_message *message);
+
 /* Methods that look at a simulation (simulation_looks.c). */
 PyObject *trb_python_state(PyObject *object, PyObject *none);
 PyObject *trb_python_state_at(PyObject *object, PyObject *value);

@@ -7,10 +7,7 @@ PyObject *trb_python_begin_peaks(PyObject *object, PyObject *value)
   const double       time = PyFloat_AsDouble(value);
   trb_message        message = {TRB_OK, ""};
   if ((time == -1.0 && PyErr_Occurred()) || trb_python_enter(self, 0) != 0) return NULL;
-  const trb_status status = trb_simulation_begin_peaks(self->simulation, time, &message);
-  trb_python_leave(self, 0);
-  if (status != TRB_OK) return trb_raise(status, &message);
-  Py_RETURN_NONE;
+  return trb_python_done(self, 0, trb_simulation_begin_peaks(self->simulation, time, &message), &message);
 }
 
 PyObject *trb_python_end_peaks(PyObject *object, PyObject *none)
@@ -19,8 +16,7 @@ PyObject *trb_python_end_peaks(PyObject *object, PyObject *none)
   (void)none;
   if (trb_python_enter(self, 0) != 0) return NULL;
   trb_simulation_end_peaks(self->simulation);
-  trb_python_leave(self, 0);
-  Py_RETURN_NONE;
+  return trb_python_done(self, 0, TRB_OK, NULL);
 }
 
 PyObject *trb_python_save_peaks(PyObject *object, PyObject *none)
@@ -44,10 +40,8 @@ PyObject *trb_python_restore_peaks(PyObject *object, PyObject *values)
     return NULL;
   }
   const trb_status status = trb_simulation_restore_peaks(self->simulation, PyArray_DATA(array), (int)PyArray_DIM(array, 0), &message);
-  trb_python_leave(self, 0);
   Py_DECREF((PyObject *)array);
-  if (status != TRB_OK) return trb_raise(status, &message);
-  Py_RETURN_NONE;
+  return trb_python_done(self, 0, status, &message);
 }
 
 PyObject *trb_python_whole_peaks(PyObject *object, PyObject *value)

@@ -35,3 +35,10 @@ void trb_python_leave(simulation_object *self, int stepping)
   if (stepping) self->stepping = 0;
   PyThread_release_lock(self->inside);
 }
+
+PyObject *trb_python_done(simulation_object *self, int stepping, trb_status status, const trb_message *message)
+{
+  trb_python_leave(self, stepping);
+  if (status != TRB_OK) return trb_raise(status, message);
+  Py_RETURN_NONE;
+}

@@ -215,10 +215,8 @@ static PyObject *set_state(PyObject *object, PyObject *args)
     return NULL;
   }
   const trb_status status = trb_simulation_set_state(self->simulation, time, PyArray_DATA(array), &message);
-  trb_python_leave(self, 0);
   Py_DECREF((PyObject *)array);
-  if (status != TRB_OK) return trb_raise(status, &message);
-  Py_RETURN_NONE;
+  return trb_python_done(self, 0, status, &message);
 }
 
 static PyObject *restart(PyObject *object, PyObject *none)
@@ -228,10 +226,7 @@ static PyObject *restart(PyObject *object, PyObject *none)
   trb_message        message = {TRB_OK, ""};
   (void)none;
   if (trb_python_enter(self, 0) != 0) return NULL;
-  const trb_status status = trb_simulation_set_state(self->simulation, it->time, it->y, &message);
-  trb_python_leave(self, 0);
-  if (status != TRB_OK) return trb_raise(status, &message);
-  Py_RETURN_NONE;
+  return trb_python_done(self, 0, trb_simulation_set_state(self->simulation, it->time, it->y, &message), &message);
 }
 
 static PyObject *get_time(PyObject *object, void *closure)

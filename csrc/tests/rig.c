@@ -7,6 +7,13 @@
 #include "contact/kernels.h"
 #include "motion/equilibrium.h"
 
+static void need(trb_status status, const trb_message *message)
+{
+  if (status == TRB_OK) return;
+  printf("%s\n", message->text);
+  exit(1);
+}
+
 trb_params rig_params(void)
 {
   trb_params p = {0};
@@ -60,10 +67,7 @@ void rig_faces(const trb_params *p, trb_face faces[RIG_FACES])
   trb_geometry   g;
   trb_message    message;
   const trb_face none = {.pocket = {-1}, .stiffness_factor = {1}, .friction_factor = {1}};
-  if (trb_geometry_derive(p, &g, &message) != TRB_OK) {
-    printf("%s\n", message.text);
-    exit(1);
-  }
+  need(trb_geometry_derive(p, &g, &message), &message);
   const double sn = sin(g.roller_half_angle), cn = cos(g.roller_half_angle), cm = cos(g.roller_axis_angle), ratio = around / radial;
   const double lean = atan2(ratio, cm) + asin(sn / cn * sin(g.roller_axis_angle) / hypot(cm, ratio)), gap = around * cn * cos(lean);
   for (int i = 0; i < 2; i++) {
@@ -97,9 +101,8 @@ trb_model *rig_model(const trb_params *params)
   trb_model  *model;
   trb_message message = {TRB_OK, ""};
   rig_faces(params, faces);
-  if (trb_model_create(params, deviation, (int)params->n_rollers, faces, RIG_FACES, &model, &message) == TRB_OK) return model;
-  printf("%s\n", message.text);
-  exit(1);
+  need(trb_model_create(params, deviation, (int)params->n_rollers, faces, RIG_FACES, &model, &message), &message);
+  return model;
 }
 
 double *rig_modes(const trb_model *m, int *columns)
@@ -135,14 +138,10 @@ trb_system *rig_system(const trb_params *params)
   trb_message message = {TRB_OK, ""};
   int         columns;
   double     *rows = rig_modes(model, &columns);
-  if (trb_model_set_modes(model, rows, (int)params->cage_modes, columns, &message) != TRB_OK) {
-    printf("%s\n", message.text);
-    exit(1);
-  }
+  need(trb_model_set_modes(model, rows, (int)params->cage_modes, columns, &message), &message);
   free(rows);
-  if (trb_system_tapered(model, &system, &message) == TRB_OK) return system;
-  printf("%s\n", message.text);
-  exit(1);
+  need(trb_system_tapered(model, &system, &message), &message);
+  return system;
 }
 
 void rig_free(trb_system *system)
@@ -185,10 +184,7 @@ double rig_state(const trb_system *system, double axial_load, double shaft_speed
                         .rollers = rollers,
                         .loads = loads};
   for (int j = 0; j < m->n_rollers; j++) angles[j] = trb_nominal_angle(m, j);
-  if (trb_equilibrium_solve(system, &e, &message) != TRB_OK) {
-    printf("%s\n", message.text);
-    exit(1);
-  }
+  need(trb_equilibrium_solve(system, &e, &message), &message);
   for (int i = 0; i < trb_state_size(system); i++) state[i] = 0.0;
   const double orbit = m->geometry.cage_speed_ratio * shaft_speed, angle = m->geometry.roller_axis_angle;
   for (int j = 0; j < m->n_rollers; j++) {
@@ -211,6 +207,72 @@ void rig_disturb(const trb_system *system, unsigned long long *seed, double *sta
   for (int i = 0; i < TRB_CAGE_SIZE; i++) state[rig_cage(system) + i] += cage[i] * rig_random(seed);
   /* beyond what rollers at their places allow: 0.108 mm */
   state[rig_cage(system) + TRB_CAGE_x] += 1.2e-4;
+}
+
+trb_dynamics *rig_dynamics(const trb_system *system, const trb_motion *motion)
+{
+  trb_message   message;
+  trb_dynamics *d;
+  need(trb_dynamics_create(system, motion, "scalar", &d, &message), &message);
+  return d;
+}
+
+trb_jacobian *rig_jacobian(const trb_system *system, const trb_motion *motion)
+{
+  trb_message   message;
+  trb_jacobian *jacobian;
+  need(trb_jacobian_create(system, motion, "scalar", &jacobian, &message), &message);
+  return jacobian;
+}
+
+trb_arrow *rig_arrow(const trb_system *system)
+{
+  trb_message message;
+  trb_arrow  *arrow;
+  need(trb_arrow_create(system->layout.n_rollers, system->layout.hub_width, &arrow, &message), &message);
+  return arrow;
+}
+
+trb_detail *rig_detail(const trb_system *system)
+{
+  trb_message message;
+  trb_detail *detail;
+  need(trb_detail_create(system->model, system->pairs, system->n_pairs, &detail, &message), &message);
+  return detail;
+}
+
+trb_simulation *rig_simulation(const trb_system *system, const trb_motion *motion, const char *kind, const trb_settings *settings,
+                               const double *y)
+{
+  trb_message     message;
+  trb_simulation *simulation;
+  need(trb_simulation_create(system, motion, kind, "", settings, 0.0, y, &simulation, &message), &message);
+  return simulation;
+}
+
+double rig_balance(const trb_system *system, const trb_motion *motion, double time, const double *y)
+{
+  const double *q = y + trb_state_quadrature(system);
+  trb_dynamics *d = rig_dynamics(system, motion);
+  trb_dynamics_pose(d, time, y);
+  trb_dynamics_loads(d, NULL, NULL);
+  double sum = trb_audit_kinetic(d) + trb_audit_elastic(d) - q[TRB_Q_work_shaft] - q[TRB_Q_work_ring] - q[TRB_Q_work_gravity];
+  for (int k = 0; k < system->model->n_losses; k++) sum += q[TRB_Q_losses + k];
+  trb_dynamics_free(d);
+  return sum;
+}
+
+double rig_jacobian_off(const trb_system *system, const trb_motion *motion, double time, double *y)
+{
+  trb_dynamics *d = rig_dynamics(system, motion);
+  trb_jacobian *jacobian = rig_jacobian(system, motion);
+  trb_arrow    *arrow = rig_arrow(system);
+  trb_jacobian_fill(jacobian, time, y, 1, arrow);
+  const double error = rig_jacobian_error(&d, 1, arrow, time, y);
+  trb_arrow_free(arrow);
+  trb_jacobian_free(jacobian);
+  trb_dynamics_free(d);
+  return error;
 }
 
 /* Largest force of a roller on the cage at a state. */

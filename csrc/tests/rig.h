@@ -3,8 +3,8 @@
 #define TRB_TESTS_RIG_H
 
 #include "body/cage.h"
-#include "motion/rhs.h"
-#include "stepping/arrow.h"
+#include "motion/record.h"
+#include "stepping/jacobian.h"
 #include "stepping/simulation.h"
 #include "system/tapered.h"
 
@@ -30,6 +30,13 @@ trb_motion  *rig_motion(double displacement_z, double shaft_speed);
 trb_settings rig_settings(void);
 /* Equilibrium under an axial load; gives the ring's displacement along z and fills a state of pure rolling. */
 double rig_state(const trb_system *system, double axial_load, double shaft_speed, double *state);
+/* What a test needs of a system for a motion, with plain kernels, and a simulation with the fastest ones; a failure ends the program. */
+trb_dynamics   *rig_dynamics(const trb_system *system, const trb_motion *motion);
+trb_jacobian   *rig_jacobian(const trb_system *system, const trb_motion *motion);
+trb_arrow      *rig_arrow(const trb_system *system);
+trb_detail     *rig_detail(const trb_system *system);
+trb_simulation *rig_simulation(const trb_system *system, const trb_motion *motion, const char *kind, const trb_settings *settings,
+                               const double *y);
 /* Disturb a state: rollers about it, velocities at some slip, the cage against its rollers so that pockets touch. */
 void rig_disturb(const trb_system *system, unsigned long long *seed, double *state);
 
@@ -48,9 +55,15 @@ void rig_note(rig_tried *tried, double change, double bound);
 /* Back towards a state until no roller pushes the cage with more than a force. */
 void rig_draw_back(trb_dynamics *d, double most, const double *to, double *state);
 
+/* Energy of all bodies and contacts at a state, less what was put in, plus what was lost, J. */
+double rig_balance(const trb_system *system, const trb_motion *motion, double time, const double *y);
+
 /* How far an arrow's Jacobian at a state lies from differences of the exact right-hand side, in units of the tolerances: the largest
  * difference of a row over its largest entry. d: dynamics of each of n systems that are simulated together. */
 double rig_jacobian_error(trb_dynamics *const *d, int n, const trb_arrow *a, double time, double *y);
+
+/* The same of the Jacobian that is computed at a state. */
+double rig_jacobian_off(const trb_system *system, const trb_motion *motion, double time, double *y);
 
 /* The whole Jacobian that an arrow holds: rows of `stride` entries, as many as the arrow has unknowns. */
 void rig_expand(const trb_arrow *a, int stride, double *whole);

@@ -103,8 +103,7 @@ static void test_apart(void)
   double            rates[ROOM], expected[ROOM], own[ROOM];
   for (int i = 0; i < ROOM; i++) rates[i] = expected[i] = NAN;
   for (int k = 0; k < N; k++) {
-    trb_dynamics *d;
-    if (!CHECK(trb_dynamics_create(p->alone[k], p->motion[k], "scalar", &d, NULL) == TRB_OK)) return;
+    trb_dynamics *d = rig_dynamics(p->alone[k], p->motion[k]);
     trb_rhs(d, NULL, 0.01, p->own[k], own);
     put_state(p->alone[k], members[k], own, expected);
     memcpy(expected + trb_state_quadrature(members[k]), own + trb_state_quadrature(p->alone[k]),

@@ -97,9 +97,8 @@ static void check_scene(const trb_params *params, double most, double shift, con
   const trb_model *m = system->model;
   double           start[512], y[512], found[COLUMNS][ROWS], exact[COLUMNS][ROWS];
   trb_motion      *motion = rig_motion(rig_state(system, 4930.0, speed, start), speed);
-  trb_dynamics    *d;
   int              checked = 0;
-  if (!CHECK(trb_dynamics_create(system, motion, "scalar", &d, NULL) == TRB_OK)) return;
+  trb_dynamics    *d = rig_dynamics(system, motion);
   for (int trial = 0; trial < 40; trial++) {
     memcpy(y, start, sizeof y);
     rig_disturb(system, &seed, y);

@@ -66,21 +66,11 @@ static void test_jacobian(double free)
   const trb_params p = params_of(free, 0.7);
   trb_system      *system = rig_system(&p);
   double           y[ROOM] = {0};
-  trb_dynamics    *d;
-  trb_jacobian    *jac;
-  trb_arrow       *a;
   trb_motion      *motion = motion_of(start_of(system, y), 300.0, 0.0);
   CHECK(system->n_moving == 1 && system->layout.hub_width == TRB_CAGE_SIZE + TRB_FREE_RING_SIZE);
   rig_disturb(system, &seed, y);
   disturb_ring(system, y);
-  if (!CHECK(trb_dynamics_create(system, motion, "scalar", &d, NULL) == TRB_OK)) return;
-  if (!CHECK(trb_jacobian_create(system, motion, "scalar", &jac, NULL) == TRB_OK)) return;
-  if (!CHECK(trb_arrow_create(system->model->n_rollers, system->layout.hub_width, &a, NULL) == TRB_OK)) return;
-  trb_jacobian_fill(jac, 0.013, y, 1, a);
-  CHECK(rig_jacobian_error(&d, 1, a, 0.013, y) < 0.02);
-  trb_arrow_free(a);
-  trb_jacobian_free(jac);
-  trb_dynamics_free(d);
+  CHECK(rig_jacobian_off(system, motion, 0.013, y) < 0.02);
   trb_motion_free(motion);
   rig_free(system);
 }
@@ -92,17 +82,15 @@ static void test_order(void)
   const trb_params    p = params_of(2.0, 0.7);
   trb_system         *system = rig_system(&p);
   double              y[ROOM] = {0}, moved[ROOM], relative[ROOM] = {0}, scale[ROOM], rates[ROOM], exact[ROOM], off[2] = {0, 0}, all = 0.0;
-  trb_dynamics       *d;
   trb_tangents       *tangents;
-  trb_arrow          *arrow;
   trb_arrow_factors  *factors;
   trb_motion         *motion = motion_of(start_of(system, y), 300.0, 0.0);
   const int           n = system->model->n_rollers, main_size = trb_state_main_size(system);
   disturb_ring(system, y);
-  if (!CHECK(trb_dynamics_create(system, motion, "scalar", &d, NULL) == TRB_OK)) return;
+  trb_dynamics *d = rig_dynamics(system, motion);
   if (!CHECK(trb_tangents_create(system, &tangents, NULL) == TRB_OK)) return;
   if (!CHECK(trb_arrow_factors_create(n, system->layout.hub_width, d->work->variant, &factors, NULL) == TRB_OK)) return;
-  if (!CHECK(trb_arrow_create(n, system->layout.hub_width, &arrow, NULL) == TRB_OK)) return;
+  trb_arrow *arrow = rig_arrow(system);
   arrow->gamma = 1e-5;
   CHECK(trb_arrow_factor(arrow, factors));
   trb_arrow_free(arrow);
@@ -139,20 +127,6 @@ static void test_order(void)
   rig_free(system);
 }
 
-/* Energy of all bodies and contacts, less what was put in, plus what was lost. */
-static double balance(const trb_system *system, const trb_motion *motion, double time, const double *y)
-{
-  const double *q = y + trb_state_quadrature(system);
-  trb_dynamics *d;
-  if (!CHECK(trb_dynamics_create(system, motion, "scalar", &d, NULL) == TRB_OK)) exit(1);
-  trb_dynamics_pose(d, time, y);
-  trb_dynamics_loads(d, NULL, NULL);
-  double sum = trb_audit_kinetic(d) + trb_audit_elastic(d) - q[TRB_Q_work_shaft] - q[TRB_Q_work_ring] - q[TRB_Q_work_gravity];
-  for (int k = 0; k < system->model->n_losses; k++) sum += q[TRB_Q_losses + k];
-  trb_dynamics_free(d);
-  return sum;
-}
-
 /* Both methods close the audit, under a load that moves the ring away, with unbalance, dampers and a torque; and they agree. */
 static void test_steps(double free, double *ends)
 {
@@ -166,16 +140,15 @@ static void test_steps(double free, double *ends)
   settings.atol_spin = 1e-6;
   trb_motion *motion = motion_of(start_of(system, y), 400.0, 0.0);
   for (int k = 0; k < 2; k++) {
-    trb_simulation *sim;
-    if (!CHECK(trb_simulation_create(system, motion, methods[k], "", &settings, 0.0, y, &sim, &message) == TRB_OK)) return;
-    const double before = balance(system, motion, 0.0, sim->integrator.y);
+    trb_simulation *sim = rig_simulation(system, motion, methods[k], &settings, y);
+    const double    before = rig_balance(system, motion, 0.0, sim->integrator.y);
     while (sim->integrator.time < 1e-3)
       if (!CHECK(trb_simulation_step(sim, &message) == TRB_OK)) break;
     CHECK(trb_simulation_state_at(sim, 1e-3, at_end[k], &message) == TRB_OK);
     const double *q = sim->integrator.y + trb_state_quadrature(system), lost = q[TRB_Q_loss_support];
     const double  turned_over = fabs(q[TRB_Q_work_ring]);
     CHECK(lost > 1e-8 && turned_over > 1e-4);
-    CHECK_NEAR(balance(system, motion, sim->integrator.time, sim->integrator.y), before, 1e-4 * turned_over);
+    CHECK_NEAR(rig_balance(system, motion, sim->integrator.time, sim->integrator.y), before, 1e-4 * turned_over);
     trb_simulation_free(sim);
   }
   for (int i = 0; i < 5; i++) {
@@ -198,12 +171,11 @@ static void test_heavy(void)
   settings.rtol *= 0.2, settings.atol_position *= 0.2, settings.atol_velocity *= 0.2, settings.atol_angle *= 0.2, settings.atol_spin *= 0.2;
   for (int k = 0; k < 2; k++) {
     p[k].ring_unbalance = p[k].ring_offset = 0.0;
-    trb_system     *system = rig_system(&p[k]);
-    const double    displacement = k == 0 ? start_of(system, y[k]) : rig_state(system, axial_load, speed, y[k]);
-    trb_motion     *motion = motion_of(displacement, 0.0, k == 0 ? 9.80665 * p[k].ring_mass : 0.0);
-    trb_simulation *sim;
+    trb_system  *system = rig_system(&p[k]);
+    const double displacement = k == 0 ? start_of(system, y[k]) : rig_state(system, axial_load, speed, y[k]);
+    trb_motion  *motion = motion_of(displacement, 0.0, k == 0 ? 9.80665 * p[k].ring_mass : 0.0);
     y[k][rig_cage(system) + TRB_CAGE_v_x] = 0.1;
-    if (!CHECK(trb_simulation_create(system, motion, "bdf", "", &settings, 0.0, y[k], &sim, &message) == TRB_OK)) return;
+    trb_simulation *sim = rig_simulation(system, motion, "bdf", &settings, y[k]);
     while (sim->integrator.time < 4e-3)
       if (!CHECK(trb_simulation_step(sim, &message) == TRB_OK)) break;
     CHECK(trb_simulation_state_at(sim, 4e-3, end[k], &message) == TRB_OK);

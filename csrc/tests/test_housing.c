@@ -61,35 +61,14 @@ static void test_jacobian(double inner_free)
   const trb_params p = params_of(inner_free, 3.0);
   trb_system      *system = rig_system(&p);
   double           y[ROOM] = {0};
-  trb_dynamics    *d;
-  trb_jacobian    *jac;
-  trb_arrow       *a;
   trb_motion      *motion = motion_of(start_of(system, y), -axial_load, -9.80665);
   CHECK(system->n_moving == (inner_free > 0.0 ? 2 : 1));
   rig_disturb(system, &seed, y);
   disturb(system, TRB_BODY_OUTER_RING, y);
   if (inner_free > 0.0) disturb(system, TRB_BODY_INNER_RING, y);
-  if (!CHECK(trb_dynamics_create(system, motion, "scalar", &d, NULL) == TRB_OK)) return;
-  if (!CHECK(trb_jacobian_create(system, motion, "scalar", &jac, NULL) == TRB_OK)) return;
-  if (!CHECK(trb_arrow_create(system->model->n_rollers, system->layout.hub_width, &a, NULL) == TRB_OK)) return;
-  trb_jacobian_fill(jac, 0.013, y, 1, a);
-  CHECK(rig_jacobian_error(&d, 1, a, 0.013, y) < 0.02);
-  trb_arrow_free(a);
-  trb_jacobian_free(jac);
-  trb_dynamics_free(d);
+  CHECK(rig_jacobian_off(system, motion, 0.013, y) < 0.02);
   trb_motion_free(motion);
   rig_free(system);
-}
-
-/* Energy of all bodies and contacts, less what was put in, plus what was lost. */
-static double balance(trb_dynamics *d, double time, const double *y)
-{
-  const double *q = y + trb_state_quadrature(d->system);
-  trb_dynamics_pose(d, time, y);
-  trb_dynamics_loads(d, NULL, NULL);
-  double sum = trb_audit_kinetic(d) + trb_audit_elastic(d) - q[TRB_Q_work_shaft] - q[TRB_Q_work_ring] - q[TRB_Q_work_gravity];
-  for (int k = 0; k < d->model->n_losses; k++) sum += q[TRB_Q_losses + k];
-  return sum;
 }
 
 static void test_steps(double inner_free)
@@ -100,29 +79,25 @@ static void test_steps(double inner_free)
   trb_message              message = {TRB_OK, ""};
   trb_system              *system = rig_system(&p);
   double                   y[ROOM] = {0}, at_end[2][ROOM];
-  trb_dynamics            *d;
   settings.rtol = 1e-7, settings.atol_position = 1e-13, settings.atol_velocity = 1e-8, settings.atol_angle = 1e-11,
   settings.atol_spin = 1e-6;
   trb_motion *motion = motion_of(start_of(system, y), -axial_load, -9.80665);
   const int   outer = at_ring(system, TRB_BODY_OUTER_RING);
   y[outer + TRB_FREE_RING_x] = 2e-6, y[outer + TRB_FREE_RING_v_z] = 2e-3, y[outer + TRB_FREE_RING_omega_n] = 0.05;
-  if (!CHECK(trb_dynamics_create(system, motion, "scalar", &d, NULL) == TRB_OK)) return;
   for (int k = 0; k < 2; k++) {
-    trb_simulation *sim;
-    if (!CHECK(trb_simulation_create(system, motion, methods[k], "", &settings, 0.0, y, &sim, &message) == TRB_OK)) return;
-    const double before = balance(d, 0.0, sim->integrator.y);
+    trb_simulation *sim = rig_simulation(system, motion, methods[k], &settings, y);
+    const double    before = rig_balance(system, motion, 0.0, sim->integrator.y);
     while (sim->integrator.time < 1e-3)
       if (!CHECK(trb_simulation_step(sim, &message) == TRB_OK)) break;
     CHECK(trb_simulation_state_at(sim, 1e-3, at_end[k], &message) == TRB_OK);
     const double *q = sim->integrator.y + trb_state_quadrature(system);
     const double  turned_over = fabs(q[TRB_Q_work_ring]) + 0.5 * 4e7 * 4e-12;
     CHECK(q[TRB_Q_loss_support] > 1e-8);
-    CHECK_NEAR(balance(d, sim->integrator.time, sim->integrator.y), before, (k == 0 ? 3e-3 : 3e-4) * turned_over);
+    CHECK_NEAR(rig_balance(system, motion, sim->integrator.time, sim->integrator.y), before, (k == 0 ? 3e-3 : 3e-4) * turned_over);
     trb_simulation_free(sim);
   }
   CHECK(fabs(at_end[0][outer + TRB_FREE_RING_x] - y[outer + TRB_FREE_RING_x]) > 1e-7);
   for (int i = 0; i < 5; i++) CHECK_NEAR(at_end[0][outer + i], at_end[1][outer + i], i < 3 ? 3e-10 : 3e-9);
-  trb_dynamics_free(d);
   trb_motion_free(motion);
   rig_free(system);
 }
@@ -156,14 +131,12 @@ static void test_momentum(void)
   p.outer_damping = p.outer_damping_turns = p.outer_support_radial = p.outer_support_axial = p.outer_support_tilt = 0.0;
   settings.rtol = 1e-7, settings.atol_position = 1e-13, settings.atol_velocity = 1e-8, settings.atol_angle = 1e-11,
   settings.atol_spin = 1e-6;
-  trb_system     *system = rig_system(&p);
-  trb_motion     *motion = motion_of(start_of(system, y), 0.0, 0.0);
-  trb_dynamics   *d;
-  trb_simulation *sim;
+  trb_system *system = rig_system(&p);
+  trb_motion *motion = motion_of(start_of(system, y), 0.0, 0.0);
   y[at_ring(system, TRB_BODY_OUTER_RING) + TRB_FREE_RING_x] = 3e-6;
-  if (!CHECK(trb_dynamics_create(system, motion, "scalar", &d, NULL) == TRB_OK)) return;
-  if (!CHECK(trb_simulation_create(system, motion, "erk", "", &settings, 0.0, y, &sim, &message) == TRB_OK)) return;
-  const trb_vec3 before = momentum_of(d, 0.0, sim->integrator.y);
+  trb_dynamics   *d = rig_dynamics(system, motion);
+  trb_simulation *sim = rig_simulation(system, motion, "erk", &settings, y);
+  const trb_vec3  before = momentum_of(d, 0.0, sim->integrator.y);
   while (sim->integrator.time < 2e-4)
     if (!CHECK(trb_simulation_step(sim, &message) == TRB_OK)) break;
   const trb_vec3 after = momentum_of(d, sim->integrator.time, sim->integrator.y);
@@ -187,11 +160,10 @@ static void test_heavy(void)
   double       y[2][ROOM] = {{0}}, end[2][ROOM];
   p[1].outer_free = 0.0;
   for (int k = 0; k < 2; k++) {
-    trb_system     *system = rig_system(&p[k]);
-    trb_motion     *motion = motion_of(start_of(system, y[k]), -axial_load, 0.0);
-    trb_simulation *sim;
+    trb_system *system = rig_system(&p[k]);
+    trb_motion *motion = motion_of(start_of(system, y[k]), -axial_load, 0.0);
     y[k][rig_cage(system) + TRB_CAGE_v_x] = 0.1;
-    if (!CHECK(trb_simulation_create(system, motion, "bdf", "", &settings, 0.0, y[k], &sim, &message) == TRB_OK)) return;
+    trb_simulation *sim = rig_simulation(system, motion, "bdf", &settings, y[k]);
     while (sim->integrator.time < 4e-3)
       if (!CHECK(trb_simulation_step(sim, &message) == TRB_OK)) break;
     CHECK(trb_simulation_state_at(sim, 4e-3, end[k], &message) == TRB_OK);

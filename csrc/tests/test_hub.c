@@ -134,14 +134,13 @@ static void test_layout(void)
 /* Rates of a disturbed state with the weight in it, and of the same state without the weight. */
 static void test_rates(void)
 {
-  scene         s = open_scene();
-  double        with[ROOM] = {0}, rates[ROOM], alone[ROOM], energy[2];
-  trb_dynamics *d;
-  const int     at = weight_at(s.system);
+  scene     s = open_scene();
+  double    with[ROOM] = {0}, rates[ROOM], alone[ROOM], energy[2];
+  const int at = weight_at(s.system);
   set_present(s.system, 0);
   const int size = trb_state_size(s.system);
   rig_disturb(s.system, &seed, s.y);
-  if (!CHECK(trb_dynamics_create(s.system, s.motion, "scalar", &d, NULL) == TRB_OK)) return;
+  trb_dynamics *d = rig_dynamics(s.system, s.motion);
   trb_rhs(d, NULL, 0.01, s.y, alone);
   energy[0] = trb_audit_kinetic(d);
   const trb_vec3 on_ring = d->hub.on[TRB_BODY_INNER_RING].force;
@@ -150,7 +149,7 @@ static void test_rates(void)
   memcpy(with, s.y, (size_t)at * sizeof *with);
   memcpy(with + at + WEIGHT_SIZE, s.y + at, (size_t)(size - at) * sizeof *with);
   for (int i = 0; i < WEIGHT_SIZE; i++) with[at + i] = i < V_X ? 1e-5 * (i + 1) : 0.1 * i;
-  if (!CHECK(trb_dynamics_create(s.system, s.motion, "scalar", &d, NULL) == TRB_OK)) return;
+  d = rig_dynamics(s.system, s.motion);
   trb_rhs(d, NULL, 0.01, with, rates);
   energy[1] = trb_audit_kinetic(d);
   const trb_vec3 gravity = trb_gravity_in(&d->drive, 1.0, 0.0), v = trb_v(with[at + V_X], with[at + V_Y], with[at + V_Z]);
@@ -174,17 +173,14 @@ static void test_rates(void)
 /* The Jacobian against differences of the right-hand side, in units of the tolerances. */
 static void test_jacobian(void)
 {
-  scene         s = open_scene();
-  double        low[ROOM], high[ROOM], coupled = 0.0;
-  trb_dynamics *d;
-  trb_jacobian *jac;
-  trb_arrow    *a;
+  scene  s = open_scene();
+  double low[ROOM], high[ROOM], coupled = 0.0;
   set_present(s.system, 1);
   const int n = trb_state_main_size(s.system), hub = trb_state_hub(s.system), at = weight_at(s.system);
   rig_disturb(s.system, &seed, s.y);
-  if (!CHECK(trb_dynamics_create(s.system, s.motion, "scalar", &d, NULL) == TRB_OK)) return;
-  if (!CHECK(trb_jacobian_create(s.system, s.motion, "scalar", &jac, NULL) == TRB_OK)) return;
-  if (!CHECK(trb_arrow_create(s.model->n_rollers, s.system->layout.hub_width, &a, NULL) == TRB_OK)) return;
+  trb_dynamics *d = rig_dynamics(s.system, s.motion);
+  trb_jacobian *jac = rig_jacobian(s.system, s.motion);
+  trb_arrow    *a = rig_arrow(s.system);
   trb_jacobian_fill(jac, 0.01, s.y, 1, a);
   rig_expand(a, MOST, &found[0][0]);
   for (int c = 0; c < n; c++) {
@@ -217,11 +213,10 @@ static void test_jacobian(void)
 /* Integrated by both methods, the weight vibrates as a damped spring does: the land is far from it. */
 static void test_steps(const char *kind)
 {
-  trb_params      p = rig_params();
-  trb_settings    settings = rig_settings();
-  trb_message     message = {TRB_OK, ""};
-  trb_simulation *sim;
-  double          y[ROOM] = {0};
+  trb_params   p = rig_params();
+  trb_settings settings = rig_settings();
+  trb_message  message = {TRB_OK, ""};
+  double       y[ROOM] = {0};
   settings.rtol = 1e-6, settings.atol_position = 1e-12, settings.atol_velocity = 1e-7, settings.atol_angle = 1e-10,
   settings.atol_spin = 1e-5;
   trb_system *system = rig_system(&p);
@@ -229,7 +224,7 @@ static void test_steps(const char *kind)
   trb_motion *motion = rig_motion(rig_state(system, 4930.0, 100 * TRB_PI, y), 100 * TRB_PI);
   const int   at = weight_at(system);
   y[at + Z] = 1e-4;
-  if (!CHECK(trb_simulation_create(system, motion, kind, "", &settings, 0.0, y, &sim, &message) == TRB_OK)) return;
+  trb_simulation *sim = rig_simulation(system, motion, kind, &settings, y);
   while (sim->integrator.time < 5e-3)
     if (!CHECK(trb_simulation_step(sim, &message) == TRB_OK)) break;
   const double t = sim->integrator.time, decay = 0.5 * damping / mass, omega = sqrt(stiffness / mass - decay * decay);

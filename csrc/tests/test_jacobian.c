@@ -84,13 +84,10 @@ static void check_scene(const trb_params *params, double load, double most, int 
   double           y[512], start[512];
   const double     speed = 100 * TRB_PI;
   trb_motion      *motion = rig_motion(rig_state(system, load, speed, y), speed);
-  trb_dynamics    *d;
-  trb_jacobian    *jac;
-  trb_arrow       *arrow;
   int              coupled = 0;
-  if (!CHECK(trb_dynamics_create(system, motion, "scalar", &d, NULL) == TRB_OK)) return;
-  if (!CHECK(trb_jacobian_create(system, motion, "scalar", &jac, NULL) == TRB_OK)) return;
-  if (!CHECK(trb_arrow_create(m->n_rollers, system->layout.hub_width, &arrow, NULL) == TRB_OK)) return;
+  trb_dynamics    *d = rig_dynamics(system, motion);
+  trb_jacobian    *jac = rig_jacobian(system, motion);
+  trb_arrow       *arrow = rig_arrow(system);
   memcpy(start, y, sizeof start);
   rig_disturb(system, &seed, y);
   rig_draw_back(d, most, start, y);

@@ -193,7 +193,6 @@ static void test_touch(void)
 {
   enum { STEPS = 1500, LOOKS = 12 };
   bench            b;
-  trb_dynamics    *d;
   trb_settings     settings = rig_settings();
   const trb_params p = rig_params();
   double           y[ROOM], least = INFINITY;
@@ -203,7 +202,7 @@ static void test_touch(void)
   settings.rtol = 0.1, settings.atol_position = 1e-6, settings.atol_angle = 1e-4, settings.atol_velocity = 0.1, settings.atol_spin = 10.0;
   settings.impact_least = 1.0, settings.impact_share = 1e3;
   if (!CHECK(open_with(&b, &settings, "multirate") == TRB_OK)) return;
-  if (!CHECK(trb_dynamics_create(b.system, b.motion, "scalar", &d, NULL) == TRB_OK)) return;
+  trb_dynamics        *d = rig_dynamics(b.system, b.motion);
   const trb_multirate *s = b.sim->integrator.self;
   for (int i = 0; i < STEPS; i++) {
     const double from = b.sim->integrator.time;

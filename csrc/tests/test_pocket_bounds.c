@@ -73,12 +73,11 @@ static void test_pockets(const trb_params *params)
 {
   const double  speed = 100.0 * TRB_PI;
   trb_system   *system = rig_system(params);
-  trb_dynamics *d;
   double        y[MOST], start[MOST];
   trb_motion   *motion = rig_motion(rig_state(system, 4930.0, speed, y), speed);
   rig_tried     of[TRB_N_GAPS] = {{0}};
   int           held = 0, reached = 0;
-  if (!CHECK(trb_dynamics_create(system, motion, "scalar", &d, NULL) == TRB_OK)) return;
+  trb_dynamics *d = rig_dynamics(system, motion);
   trb_dynamics_pose(d, 0.0, y);
   for (int trial = 0; trial < 12; trial++) {
     memcpy(start, y, sizeof start);

@@ -46,7 +46,6 @@ static void test_forces(void)
   double        y[ROOM];
   trb_motion   *motion = rig_motion(rig_state(system, 4930.0, 100 * TRB_PI, y), 100 * TRB_PI);
   trb_dynamics *d[2];
-  trb_detail   *detail;
   const int     row = add_rib(both, &rib), record = TRB_FIELD_AT_outer_rib_load; /* that its number gives it */
   CHECK(trb_field_size(system, record) == 0 && trb_field_size(both, record) == 12);
   /* the faces stand together where the inner ring is not displaced */
@@ -55,7 +54,7 @@ static void test_forces(void)
   for (int j = 0; j < 12; j++) y[trb_state_roller(system, j) + TRB_ROLLER_z] += 3e-5;
   if (!CHECK(trb_dynamics_create(system, motion, "scalar", &d[0], NULL) == TRB_OK)) return;
   if (!CHECK(trb_dynamics_create(both, motion, "scalar", &d[1], NULL) == TRB_OK)) return;
-  if (!CHECK(trb_detail_create(both->model, both->pairs, both->n_pairs, &detail, NULL) == TRB_OK)) return;
+  trb_detail *detail = rig_detail(both);
   trb_detail_clear(both->model, detail);
   for (int i = 0; i < 2; i++) {
     trb_dynamics_pose(d[i], 0.0, y);
