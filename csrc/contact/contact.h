@@ -101,11 +101,8 @@ typedef struct trb_instant {
   const unsigned        *apart;   /* n_rollers: bits of the pairs that are proven not to touch; NULL: none is */
 } trb_instant;
 
-/* A point contact, as users look into it; a line contact has the same of its nodes: sums, largest values, and means weighted by load.
- * X(name, unit, text) */
-#define TRB_POINT_FIELDS(X) \
-  X(interference,       "m",    "interference of the undeformed surfaces") \
-  X(load,               "N",    "normal load") \
+/* What the laws of films and friction give at a point or a node. X(name, unit, text) */
+#define TRB_LAW_FIELDS(X) \
   X(pressure,           "Pa",   "largest Hertz pressure") \
   X(mean_speed,         "m/s",  "mean surface speed relative to the contact") \
   X(sliding_speed,      "m/s",  "sliding speed") \
@@ -114,7 +111,14 @@ typedef struct trb_instant {
   X(film_rigid,         "m",    "isoviscous-rigid film") \
   X(thermal_factor,     "1",    "thermal film factor") \
   X(film,               "m",    "central film thickness") \
-  X(film_parameter,     "1",    "film parameter Lambda") \
+  X(film_parameter,     "1",    "film parameter Lambda")
+
+/* A point contact, as users look into it; a line contact has the same of its nodes: sums, largest values, and means weighted by load.
+ * X(name, unit, text) */
+#define TRB_POINT_FIELDS(X) \
+  X(interference,       "m",    "interference of the undeformed surfaces") \
+  X(load,               "N",    "normal load") \
+  TRB_LAW_FIELDS(X) \
   X(friction_coefficient, "1",  "friction coefficient") \
   X(friction,           "N",    "magnitude of the friction force") \
   X(height,             "m",    "height of the contact above the raceway") \

@@ -16,15 +16,7 @@ enum { TRB_TILE_LANES = 256, TRB_TILE_FILL = 64, TRB_LANE_STRIDE = TRB_TILE_LANE
   X(load,           "N",   "normal load of the node") \
   X(load_per_length, "N/m", "load per length") \
   X(half_width,     "m",   "Hertz half width") \
-  X(pressure,       "Pa",  "largest Hertz pressure") \
-  X(mean_speed,     "m/s", "mean surface speed relative to the contact") \
-  X(sliding_speed,  "m/s", "sliding speed") \
-  X(slide_roll,     "1",   "slide-roll ratio") \
-  X(film_elastic,   "m",   "piezoviscous-elastic film") \
-  X(film_rigid,     "m",   "isoviscous-rigid film") \
-  X(thermal_factor, "1",   "thermal film factor") \
-  X(film,           "m",   "central film thickness") \
-  X(film_parameter, "1",   "film parameter Lambda") \
+  TRB_LAW_FIELDS(X) \
   X(traction_coefficient, "1", "friction coefficient of the full film") \
   X(boundary_coefficient, "1", "friction coefficient of boundary friction") \
   X(friction_coefficient, "1", "friction coefficient") \
@@ -126,7 +118,6 @@ typedef struct trb_kernel_variant {
   const trb_modal_kernels *modal;
 } trb_kernel_variant;
 
-enum { TRB_MAX_KERNEL_VARIANTS = 4 };
 /* Variants that were built, slowest first. */
 extern const trb_kernel_variant trb_kernel_variants[];
 extern const int                trb_n_kernel_variants;

@@ -213,30 +213,18 @@ static void choose_steps(solver *s)
   }
 }
 
-/* Stiffness by differences: one evaluation of all contacts for each column, with all rollers moved at once. */
-static void differentiate(solver *s)
+/* Stiffness by differences: one evaluation of all contacts for each column, with all rollers moved at once. finely: by central differences at the
+ * solution, for those who read it; forces and ring are then written to. */
+static void differentiate(solver *s, int finely)
 {
   choose_steps(s);
   memset(s->stiffness, 0, sizeof s->stiffness);
   for (int c = 0; c < N + R; c++) {
     const int    of_ring = c >= N, at = of_ring ? c - N : c;
-    const double step = of_ring ? ring_difference[at] : difference[at];
+    const double step = (finely ? TRB_FINE_STEPS : 1.0) * (of_ring ? ring_difference[at] : difference[at]);
+    if (finely) evaluate_moved(s, of_ring, at, -step, s->forces, s->ring);
     evaluate_moved(s, of_ring, at, step, s->shifted, s->ring_shifted);
-    put_column(s, of_ring, at, step, s->forces, s->ring);
-  }
-}
-
-/* The same by central differences at the solution, for those who read it: forces and ring are written to. */
-static void differentiate_finely(solver *s)
-{
-  choose_steps(s);
-  memset(s->stiffness, 0, sizeof s->stiffness);
-  for (int c = 0; c < N + R; c++) {
-    const int    of_ring = c >= N, at = of_ring ? c - N : c;
-    const double step = TRB_FINE_STEPS * (of_ring ? ring_difference[at] : difference[at]);
-    evaluate_moved(s, of_ring, at, -step, s->forces, s->ring);
-    evaluate_moved(s, of_ring, at, step, s->shifted, s->ring_shifted);
-    put_column(s, of_ring, at, 2.0 * step, s->forces, s->ring);
+    put_column(s, of_ring, at, finely ? 2.0 * step : step, s->forces, s->ring);
   }
 }
 
@@ -372,7 +360,7 @@ static trb_status iterate(solver *s, double *step_rollers, double *step_ring, tr
     if (e->iterations >= USUAL_STEPS && is_fair(s, off)) return TRB_OK;
     if (e->warm && e->iterations == WARM_STEPS) break;
     if (e->iterations == USUAL_STEPS && !(off < TRB_NEAR_SHARE * largest_load(s))) break;
-    if (!known) differentiate(s);
+    if (!known) differentiate(s, 0);
     int          accepted = 0;
     const int    reused = known;
     const double before = off;
@@ -470,7 +458,7 @@ static void read_reaction(const solver *s)
 static trb_status condense(solver *s, trb_message *message)
 {
   enum { WIDTH = N + R };
-  differentiate_finely(s);
+  differentiate(s, 1);
   memcpy(s->e->stiffness, s->stiffness, sizeof s->stiffness);
   for (int j = 0; j < s->m->n_rollers; j++) {
     const double *from_ring = s->from_ring + (size_t)N * R * j;

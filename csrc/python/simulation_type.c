@@ -115,8 +115,8 @@ static PyObject *simulation_new(PyTypeObject *type, PyObject *args, PyObject *ke
   if (self != NULL) {
     const trb_motion *const *prescribed = (const trb_motion *const *)self->motions;
     const char              *variant = ((model_object *)PyTuple_GetItem(models, 0))->variant;
-    const trb_status status = trb_simulation_create_all(systems, prescribed, (int)PyTuple_Size(models), kind, variant, &settings, time,
-                                                        PyArray_DATA(state), (int)PyArray_DIM(state, 0), &self->simulation, &message);
+    const trb_status         status = trb_simulation_create(systems, prescribed, (int)PyTuple_Size(models), kind, variant, &settings, time,
+                                                            PyArray_DATA(state), (int)PyArray_DIM(state, 0), &self->simulation, &message);
     if (status != TRB_OK) {
       (void)trb_raise(status, &message);
       Py_CLEAR(self);

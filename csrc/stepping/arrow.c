@@ -104,24 +104,26 @@ void trb_arrow_factors_free(trb_arrow_factors *factors)
   free(factors);
 }
 
-int trb_arrow_factor(const trb_arrow *arrow, trb_arrow_factors *f)
+int trb_arrow_factor(const trb_arrow *arrow, double gamma, const int *chosen, int n, trb_arrow_factors *f)
 {
   const trb_hub_factor *hub = &f->hub;
   f->gamma = 0.0;
-  if (f->followers != NULL) trb_followers_hub(f->followers, arrow, hub);
+  if (f->followers != NULL) trb_followers_hub(f->followers, arrow, gamma, hub);
   else
     for (int c = 0; c < hub->width; c++)
-      for (int i = 0; i < hub->room; i++) hub->schur[c * hub->room + i] = (double)(i == c) - arrow->gamma * arrow->hub[c * hub->room + i];
-  for (int j = 0; j < arrow->n; j++)
-    if (!f->kernels->factor(&arrow->rollers[j], arrow->gamma, &f->rollers[j])) return 0;
-  for (int j = 0; j < arrow->n; j++) {
-    f->borders[j].parts = arrow->borders[j].parts;
-    if (arrow->borders[j].parts == 0U) continue;
-    const trb_arrow_border *border = f->followers == NULL ? &arrow->borders[j] : trb_followers_border(f->followers, arrow, j);
-    f->kernels->border(border, arrow->gamma, &f->rollers[j], &f->borders[j], hub);
+      for (int i = 0; i < hub->room; i++) hub->schur[c * hub->room + i] = (double)(i == c) - gamma * arrow->hub[c * hub->room + i];
+  for (int k = 0; k < n; k++)
+    if (!f->kernels->factor(&arrow->rollers[chosen == NULL ? k : chosen[k]], gamma, &f->rollers[k])) return 0;
+  for (int k = 0; k < n; k++) {
+    const int               j = chosen == NULL ? k : chosen[k];
+    const trb_arrow_border *border = &arrow->borders[j];
+    f->borders[k].parts = border->parts;
+    if (border->parts == 0U) continue;
+    if (f->followers != NULL) border = trb_followers_border(f->followers, arrow, gamma, j);
+    f->kernels->border(border, gamma, &f->rollers[k], &f->borders[k], hub);
   }
   if (!f->kernels->invert_hub(hub)) return 0;
-  f->gamma = arrow->gamma;
+  f->gamma = gamma;
   return 1;
 }
 

@@ -35,8 +35,8 @@ trb_status trb_arrow_factors_create(int n_rollers, int hub_width, int variant, t
 /* Entries of the hub whose rate is another one times a constant (stepping/followers.h): two for each, its own and that of the other one. */
 trb_status trb_arrow_factors_follow(trb_arrow_factors *factors, int n, const int (*entries)[2], trb_message *message);
 void       trb_arrow_factors_free(trb_arrow_factors *factors);
-/* 1 if I - gamma J is regular. */
-int trb_arrow_factor(const trb_arrow *arrow, trb_arrow_factors *factors);
+/* Of I - gamma J with n chosen rollers (NULL: the first n), which become the first ones of the system; 1 if it is regular. */
+int trb_arrow_factor(const trb_arrow *arrow, double gamma, const int *chosen, int n, trb_arrow_factors *factors);
 /* x: rollers then hub, overwritten by the solution; see trb_block_kernels. */
 void trb_arrow_solve(const trb_arrow_factors *factors, double *x);
 

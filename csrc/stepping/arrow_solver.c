@@ -44,7 +44,8 @@ static SUNLinearSolver_Type solver_type(SUNLinearSolver solver)
 /* > 0: singular, the integrator may try again with another step. */
 static int solver_setup(SUNLinearSolver solver, SUNMatrix matrix)
 {
-  return trb_arrow_factor(trb_arrow_of(matrix), solver->content) ? 0 : 1;
+  const trb_arrow *arrow = trb_arrow_of(matrix);
+  return trb_arrow_factor(arrow, arrow->gamma, NULL, arrow->n, solver->content) ? 0 : 1;
 }
 
 static int solver_solve(SUNLinearSolver solver, SUNMatrix matrix, N_Vector x, N_Vector b, sunrealtype tolerance)

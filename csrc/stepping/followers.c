@@ -48,26 +48,26 @@ void trb_followers_free(trb_followers *followers)
   free(followers);
 }
 
-void trb_followers_hub(trb_followers *f, const trb_arrow *arrow, const trb_hub_factor *hub)
+void trb_followers_hub(trb_followers *f, const trb_arrow *arrow, double gamma, const trb_hub_factor *hub)
 {
   for (int c = 0; c < f->kept; c++) {
     const double *from = arrow->hub + f->kept_entry[c] * arrow->room;
     double       *to = hub->schur + c * hub->room;
-    for (int i = 0; i < f->kept; i++) to[i] = (double)(i == c) - arrow->gamma * from[f->kept_entry[i]];
+    for (int i = 0; i < f->kept; i++) to[i] = (double)(i == c) - gamma * from[f->kept_entry[i]];
     for (int i = f->kept; i < hub->room; i++) to[i] = 0.0;
   }
   for (int k = 0; k < f->n; k++) {
     const double *from = arrow->hub + f->entry[k] * arrow->room;
     double       *own = f->hub + k * f->room, *to = hub->schur + f->leader[k] * hub->room;
-    f->rate[k] = arrow->gamma * arrow->hub[f->kept_entry[f->leader[k]] * arrow->room + f->entry[k]];
-    for (int i = 0; i < f->kept; i++) own[i] = arrow->gamma * from[f->kept_entry[i]];
+    f->rate[k] = gamma * arrow->hub[f->kept_entry[f->leader[k]] * arrow->room + f->entry[k]];
+    for (int i = 0; i < f->kept; i++) own[i] = gamma * from[f->kept_entry[i]];
     for (int i = 0; i < f->kept; i++) to[i] -= f->rate[k] * own[i];
   }
 }
 
 static int has(const trb_arrow_border *border, int entry) { return (int)(border->parts >> entry / TRB_NP & 1U); }
 
-const trb_arrow_border *trb_followers_border(trb_followers *f, const trb_arrow *arrow, int roller)
+const trb_arrow_border *trb_followers_border(trb_followers *f, const trb_arrow *arrow, double gamma, int roller)
 {
   const trb_arrow_border *whole = &arrow->borders[roller];
   trb_arrow_border       *to = &f->folded;
@@ -86,7 +86,7 @@ const trb_arrow_border *trb_followers_border(trb_followers *f, const trb_arrow *
     const double *from = whole->to_hub + f->entry[k] * TRB_NR;
     double       *column = to->to_hub + f->leader[k] * TRB_NR;
     const int     there = has(whole, f->entry[k]);
-    for (int c = 0; c < TRB_NR; c++) own[c] = there ? arrow->gamma * from[c] : 0.0;
+    for (int c = 0; c < TRB_NR; c++) own[c] = there ? gamma * from[c] : 0.0;
     for (int c = 0; there && c < TRB_NR; c++) column[c] += f->rate[k] * from[c];
     to->parts |= (unsigned)there << f->leader[k] / TRB_NP;
   }

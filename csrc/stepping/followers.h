@@ -25,8 +25,8 @@ trb_status trb_followers_create(int n_rollers, int hub_width, int n, const int (
                                 trb_message *message);
 void       trb_followers_free(trb_followers *followers);
 /* Of I - gamma J without the followers: the hub's block, and a roller's border, which is kept in the followers. */
-void                    trb_followers_hub(trb_followers *f, const trb_arrow *arrow, const trb_hub_factor *hub);
-const trb_arrow_border *trb_followers_border(trb_followers *f, const trb_arrow *arrow, int roller);
+void                    trb_followers_hub(trb_followers *f, const trb_arrow *arrow, double gamma, const trb_hub_factor *hub);
+const trb_arrow_border *trb_followers_border(trb_followers *f, const trb_arrow *arrow, double gamma, int roller);
 /* Before a solution, and after it; x: as trb_arrow_solve takes it. */
 void trb_followers_before(trb_followers *f, const trb_block_kernels *kernels, const trb_arrow_factor_border *borders, int n_rollers,
                           double *x);

@@ -54,23 +54,10 @@ static void note_slopes(trb_mover *mover, double end)
 
 static int factor(trb_multirate *s, const trb_team *team, double gamma)
 {
-  trb_arrow_factors    *f = s->factors;
-  const trb_hub_factor *hub = &f->hub;
   s->count.linear_setups++;
-  s->has_factors = 0;
-  for (int c = 0; c < hub->width; c++)
-    for (int i = 0; i < hub->room; i++) hub->schur[c * hub->room + i] = (double)(i == c) - gamma * s->arrow->hub[c * hub->room + i];
-  for (int k = 0; k < team->n; k++) {
-    const int j = team->rollers[k];
-    if (!f->kernels->factor(&s->arrow->rollers[j], gamma, &f->rollers[k])) return 0;
-    f->borders[k].parts = s->arrow->borders[j].parts;
-    if (f->borders[k].parts != 0U) f->kernels->border(&s->arrow->borders[j], gamma, &f->rollers[k], &f->borders[k], hub);
-  }
-  if (!f->kernels->invert_hub(hub)) return 0;
-  s->gamma = gamma;
   s->factors_age = 0;
-  s->has_factors = 1;
-  return 1;
+  s->has_factors = trb_arrow_factor(s->arrow, gamma, team->rollers, team->n, s->factors);
+  return s->has_factors;
 }
 
 /* The linear system of the team with the hub; 0: it is singular. */
@@ -91,7 +78,7 @@ static int prepare_hub(trb_integrator *it, const trb_team *team, double end, dou
     s->has_jacobian = 1;
     s->jacobian_age = 0;
   }
-  const int other = fabs(gamma / s->gamma - 1.0) > gamma_change || s->factors_age >= TRB_SETUP_EVERY;
+  const int other = fabs(gamma / s->factors->gamma - 1.0) > gamma_change || s->factors_age >= TRB_SETUP_EVERY;
   return fill || !s->has_factors || other ? factor(s, team, gamma) : 1;
 }
 

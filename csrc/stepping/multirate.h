@@ -43,7 +43,6 @@ typedef struct trb_multirate {
   int                *together; /* rollers that step with the hub, ascending */
   int                 n_together;
   int                 has_jacobian, has_factors; /* of the team with the hub as it is */
-  double              gamma;                     /* of the factors */
   int                 jacobian_age, factors_age; /* solves that they were used for */
   double             *y, *rates;                 /* scratch: a state and its rates */
   double             *error;                     /* of the last step of every body, by entry of the state */

@@ -149,9 +149,9 @@ static trb_status open_all(trb_simulation *s, const trb_system *const *systems, 
   return it->kind->create(it, message);
 }
 
-trb_status trb_simulation_create_all(const trb_system *const *systems, const trb_motion *const *motions, int n, const char *kind,
-                                     const char *variant, const trb_settings *settings, double time, const double *state, int n_state,
-                                     trb_simulation **simulation, trb_message *message)
+trb_status trb_simulation_create(const trb_system *const *systems, const trb_motion *const *motions, int n, const char *kind,
+                                 const char *variant, const trb_settings *settings, double time, const double *state, int n_state,
+                                 trb_simulation **simulation, trb_message *message)
 {
   *simulation = NULL;
   const trb_status status = check_settings(settings, message);
@@ -171,15 +171,6 @@ trb_status trb_simulation_create_all(const trb_system *const *systems, const trb
   }
   *simulation = s;
   return TRB_OK;
-}
-
-trb_status trb_simulation_create(const trb_system *system, const trb_motion *motion, const char *kind, const char *variant,
-                                 const trb_settings *settings, double time, const double *state, trb_simulation **simulation,
-                                 trb_message *message)
-{
-  const trb_system *const systems[TRB_MOST_MEMBERS] = {system};
-  const trb_motion *const motions[TRB_MOST_MEMBERS] = {motion};
-  return trb_simulation_create_all(systems, motions, 1, kind, variant, settings, time, state, trb_state_size(system), simulation, message);
 }
 
 void trb_simulation_free(trb_simulation *s)

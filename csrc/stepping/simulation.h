@@ -20,14 +20,11 @@ typedef struct trb_simulation {
   trb_memory       memory;                  /* of all arrays */
 } trb_simulation;
 
-/* kind: name of an integrator; variant: name of a kernel variant or "". */
-trb_status trb_simulation_create(const trb_system *system, const trb_motion *motion, const char *kind, const char *variant,
-                                 const trb_settings *settings, double time, const double *state, trb_simulation **simulation,
-                                 trb_message *message);
-/* Of n bearings: their systems, which are copied, and what is prescribed for each. n_state: length of the state. */
-trb_status trb_simulation_create_all(const trb_system *const *systems, const trb_motion *const *motions, int n, const char *kind,
-                                     const char *variant, const trb_settings *settings, double time, const double *state, int n_state,
-                                     trb_simulation **simulation, trb_message *message);
+/* Of n bearings: their systems, which are copied, and what is prescribed for each. kind: name of an integrator; variant: of a kernel variant
+ * or "". n_state: length of the state. */
+trb_status trb_simulation_create(const trb_system *const *systems, const trb_motion *const *motions, int n, const char *kind,
+                                 const char *variant, const trb_settings *settings, double time, const double *state, int n_state,
+                                 trb_simulation **simulation, trb_message *message);
 void       trb_simulation_free(trb_simulation *s);
 
 /* Start the integrator again at a state. */

@@ -1,7 +1,5 @@
 #include "system/system.h"
 
-#include <string.h>
-
 const trb_body *trb_state_body(const trb_system *system, int index, int *coordinate)
 {
   for (int b = 0; b < system->n_bodies; b++) {
@@ -20,20 +18,6 @@ trb_tolerance trb_state_tolerance(const trb_system *system, int index)
   if (own >= 0 && own < system->model->n_rollers * TRB_ROLLER_SIZE) return trb_roller_coordinates[own % TRB_ROLLER_SIZE].tolerance;
   body = trb_state_body(system, index, &coordinate);
   return body != NULL ? body->coordinates[coordinate].tolerance : TRB_TOL_QUADRATURE;
-}
-
-int trb_system_body(const trb_system *system, const char *name)
-{
-  for (int b = 0; b < system->n_bodies; b++)
-    if (strcmp(system->bodies[b].name, name) == 0) return b;
-  return -1;
-}
-
-int trb_system_pair(const trb_system *system, const char *name)
-{
-  for (int i = 0; i < system->n_pairs; i++)
-    if (strcmp(system->pairs[i].name, name) == 0) return i;
-  return -1;
 }
 
 double trb_system_shaft_speed(const trb_system *system, const trb_drive *drive, const double *y)

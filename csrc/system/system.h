@@ -51,10 +51,6 @@ typedef struct trb_system {
  * which it loses energy is booked as a loss that the state has. */
 trb_status trb_system_finish(trb_system *system, trb_message *message);
 
-/* Number of a body or of a pair by name, or -1. */
-int trb_system_body(const trb_system *system, const char *name);
-int trb_system_pair(const trb_system *system, const char *name);
-
 /* Speed of the driven ring at a state, rad/s. */
 double trb_system_shaft_speed(const trb_system *system, const trb_drive *drive, const double *y);
 

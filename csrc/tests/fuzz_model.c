@@ -76,8 +76,7 @@ static void step_on(const trb_system *system, const trial *t, const trb_motion *
   trb_message     message = {TRB_OK, ""};
   trb_simulation *s = NULL;
   trb_settings    settings = t->settings;
-  if (trb_simulation_create(system, motion, t->explicit_method > 0.0 ? "erk" : "bdf", "", &settings, 0.0, state, &s, &message) != TRB_OK)
-    return;
+  if (rig_create(system, motion, t->explicit_method > 0.0 ? "erk" : "bdf", "", &settings, 0.0, state, &s, &message) != TRB_OK) return;
   double *record = malloc((size_t)trb_record_offset(system, TRB_N_FIELDS) * sizeof *record);
   if (record != NULL) {
     const double time = 1e-3;

@@ -241,12 +241,20 @@ trb_detail *rig_detail(const trb_system *system)
   return detail;
 }
 
+trb_status rig_create(const trb_system *system, const trb_motion *motion, const char *kind, const char *variant,
+                      const trb_settings *settings, double time, const double *state, trb_simulation **simulation, trb_message *message)
+{
+  const trb_system *const systems[TRB_MOST_MEMBERS] = {system};
+  const trb_motion *const motions[TRB_MOST_MEMBERS] = {motion};
+  return trb_simulation_create(systems, motions, 1, kind, variant, settings, time, state, trb_state_size(system), simulation, message);
+}
+
 trb_simulation *rig_simulation(const trb_system *system, const trb_motion *motion, const char *kind, const trb_settings *settings,
                                const double *y)
 {
   trb_message     message;
   trb_simulation *simulation;
-  need(trb_simulation_create(system, motion, kind, "", settings, 0.0, y, &simulation, &message), &message);
+  need(rig_create(system, motion, kind, "", settings, 0.0, y, &simulation, &message), &message);
   return simulation;
 }
 

@@ -119,7 +119,7 @@ static void check_trial(const trb_arrow *a, trb_arrow_factors *f)
   double    x[SIZE + SPARE], b[SIZE + SPARE], exact[SIZE];
   fill(b, (size_t)(n + SPARE), 1.0);
   memcpy(x, b, sizeof x);
-  CHECK(trb_arrow_factor(a, f) == 1);
+  CHECK(trb_arrow_factor(a, a->gamma, NULL, a->n, f) == 1);
   CHECK(f->gamma == a->gamma);
   trb_arrow_solve(f, x);
   for (int i = 0; i < SPARE; i++) CHECK(x[n + i] == b[n + i]);
@@ -192,7 +192,7 @@ static void test_padding(int variant, int width)
   if (!CHECK(trb_arrow_factors_create(MOST, width, variant, &f, NULL) == TRB_OK)) return;
   a->gamma = 1.0;
   randomise(a, SHIFTED_ROW_LARGE);
-  CHECK(trb_arrow_factor(a, f) == 1);
+  CHECK(trb_arrow_factor(a, a->gamma, NULL, a->n, f) == 1);
   for (int j = 0; j < MOST; j++)
     for (int c = 0; c < TRB_NR; c++) CHECK(f->rollers[j].inverse[c][TRB_NR] == 0.0);
   for (int c = 0; c < width; c++)
@@ -203,7 +203,7 @@ static void test_padding(int variant, int width)
 
 static void expect_singular(const trb_arrow *a, trb_arrow_factors *f)
 {
-  CHECK(trb_arrow_factor(a, f) == 0);
+  CHECK(trb_arrow_factor(a, a->gamma, NULL, a->n, f) == 0);
   CHECK(f->gamma == 0.0);
 }
 
@@ -212,7 +212,7 @@ static void test_singular_roller(trb_arrow *a, trb_arrow_factors *f, int kind, i
 {
   const double bad[] = {NAN, INFINITY, -INFINITY};
   randomise(a, kind);
-  CHECK(trb_arrow_factor(a, f) == 1);
+  CHECK(trb_arrow_factor(a, a->gamma, NULL, a->n, f) == 1);
   for (int c = 0; c < TRB_NR; c++) a->rollers[1].own[c][at] = (double)(c == at);
   expect_singular(a, f);
   randomise(a, kind);
@@ -259,7 +259,7 @@ static void test_unit(trb_arrow *a, trb_arrow_factors *f)
     a->borders[j].parts = 0U;
     if (a->width > 0) trb_arrow_add_parts(a, j, trb_hub_parts(0, a->width));
   }
-  CHECK(trb_arrow_factor(a, f) == 1);
+  CHECK(trb_arrow_factor(a, a->gamma, NULL, a->n, f) == 1);
   for (int i = 0; i < n + SPARE; i++) x[i] = i;
   trb_arrow_solve(f, x);
   for (int i = 0; i < n + SPARE; i++) CHECK_NEAR(x[i], i, 0.0);
@@ -278,7 +278,7 @@ static void test_exchanges(trb_arrow *a, trb_arrow_factors *f)
   for (int c = 0; c < a->width; c++)
     for (int i = 0; i < a->width; i++) a->hub[c * a->room + i] = (i == (c + 1) % a->width);
   of_system(a);
-  CHECK(trb_arrow_factor(a, f) == 1);
+  CHECK(trb_arrow_factor(a, a->gamma, NULL, a->n, f) == 1);
   for (int i = 0; i < n; i++) x[i] = i;
   trb_arrow_solve(f, x);
   for (int j = 0; j < a->n; j++)

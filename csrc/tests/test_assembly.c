@@ -268,9 +268,9 @@ static void test_steps(int housed)
     trb_message     message = {TRB_OK, ""};
     settings.atol_position *= 1e-3, settings.atol_angle *= 1e-3, settings.atol_velocity *= 1e-3, settings.atol_spin *= 1e-3;
     settings.rtol *= 1e-3, settings.max_step = 1e-7;
-    CHECK(trb_simulation_create_all(systems, motions, N, kinds[k], "", &settings, 0.0, p->y, size - 1, &s, &message) == TRB_ERR_INPUT);
+    CHECK(trb_simulation_create(systems, motions, N, kinds[k], "", &settings, 0.0, p->y, size - 1, &s, &message) == TRB_ERR_INPUT);
     CHECK_SAYS(message.text, "values needed");
-    if (!CHECK(trb_simulation_create_all(systems, motions, N, kinds[k], "", &settings, 0.0, p->y, size, &s, &message) == TRB_OK)) return;
+    if (!CHECK(trb_simulation_create(systems, motions, N, kinds[k], "", &settings, 0.0, p->y, size, &s, &message) == TRB_OK)) return;
     const int length = trb_simulation_row(s);
     double   *row = calloc(2 * (size_t)length, sizeof *row), times[2] = {0.0, 2e-4};
     int       rows;

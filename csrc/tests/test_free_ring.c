@@ -92,7 +92,7 @@ static void test_order(void)
   if (!CHECK(trb_arrow_factors_create(n, system->layout.hub_width, d->work->variant, &factors, NULL) == TRB_OK)) return;
   trb_arrow *arrow = rig_arrow(system);
   arrow->gamma = 1e-5;
-  CHECK(trb_arrow_factor(arrow, factors));
+  CHECK(trb_arrow_factor(arrow, arrow->gamma, NULL, arrow->n, factors));
   trb_arrow_free(arrow);
   for (int i = 0; i < trb_state_size(system); i++) scale[i] = tolerance[trb_state_tolerance(system, i)];
   const trb_tangent_measure measure = {relative, scale, factors->kernels, factors->gamma, 1.0, 1e9, 1e9};

@@ -234,7 +234,7 @@ static void test_steps(const char *kind)
   trb_simulation_free(sim);
   /* what is wrong is said in the weight's name */
   y[at + V_Y] = NAN;
-  CHECK(trb_simulation_create(system, motion, kind, "", &settings, 0.0, y, &sim, &message) != TRB_OK);
+  CHECK(rig_create(system, motion, kind, "", &settings, 0.0, y, &sim, &message) != TRB_OK);
   CHECK_SAYS(message.text, "weight, v_y (second velocity, m/s)");
   trb_motion_free(motion);
   rig_free(system);

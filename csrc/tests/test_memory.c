@@ -118,7 +118,7 @@ static trb_status make_simulation(const char *kind, trb_message *message)
   trb_simulation    *made = NULL;
   trb_status         status = trb_motion_create(table, 1, &motion, message);
   if (status != TRB_OK) return status;
-  status = trb_simulation_create(built, motion, kind, "", &settings, 0.0, state, &made, message);
+  status = rig_create(built, motion, kind, "", &settings, 0.0, state, &made, message);
   CHECK((made == NULL) == (status != TRB_OK));
   trb_simulation_free(made);
   trb_motion_free(motion);
@@ -162,7 +162,7 @@ static void fail_in_steps(void)
   for (long n = 0; hit && n < 50; n++) {
     trb_message     message = {TRB_OK, ""};
     trb_simulation *s = NULL;
-    if (!CHECK(trb_simulation_create(built, motion, "bdf", "", &settings, 0.0, state, &s, NULL) == TRB_OK)) return;
+    if (!CHECK(rig_create(built, motion, "bdf", "", &settings, 0.0, state, &s, NULL) == TRB_OK)) return;
     CHECK(trb_simulation_step(s, &message) == TRB_OK && trb_simulation_set_state(s, 0.0, state, &message) == TRB_OK);
     const long before = live;
     countdown = n;

@@ -173,7 +173,7 @@ static void test_steps(const char *method, int n)
   CHECK(fabs(end[at]) < 1.2e-4 && end[at] != y[at]);
   trb_simulation_free(sim);
   y[at + 2 * n - 1] = NAN;
-  CHECK(trb_simulation_create(system, motion, method, "", &settings, 0.0, y, &sim, &message) != TRB_OK);
+  CHECK(rig_create(system, motion, method, "", &settings, 0.0, y, &sim, &message) != TRB_OK);
   CHECK_SAYS(message.text, "cage, v");
   trb_motion_free(motion);
   rig_free(system);

@@ -85,7 +85,7 @@ typedef struct bench {
 
 static trb_status open_with(bench *b, const trb_settings *settings, const char *kind)
 {
-  return trb_simulation_create(b->system, b->motion, kind, "scalar", settings, 0.0, b->start, &b->sim, &message);
+  return rig_create(b->system, b->motion, kind, "scalar", settings, 0.0, b->start, &b->sim, &message);
 }
 
 static void make(bench *b, const trb_params *params)

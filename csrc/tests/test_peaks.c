@@ -60,7 +60,7 @@ static trb_simulation *disturbed(unsigned long long seed)
   double             state[512];
   memcpy(state, start, sizeof state);
   rig_disturb(built, &seed, state);
-  CHECK(trb_simulation_create(built, motion, "bdf", "", &settings, 0.0, state, &s, NULL) == TRB_OK);
+  CHECK(rig_create(built, motion, "bdf", "", &settings, 0.0, state, &s, NULL) == TRB_OK);
   return s;
 }
 

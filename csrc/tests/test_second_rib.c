@@ -97,7 +97,7 @@ static void test_steps(void)
     rig_disturb(system, &seed, y);
     seed = 31;
     if (k > 0) add_rib(system, &rib);
-    if (!CHECK(trb_simulation_create(system, motion, "bdf", "scalar", &settings, 0.0, y, &s, NULL) == TRB_OK)) return;
+    if (!CHECK(rig_create(system, motion, "bdf", "scalar", &settings, 0.0, y, &s, NULL) == TRB_OK)) return;
     while (s->integrator.time < 5e-4)
       if (!CHECK(trb_simulation_step(s, NULL) == TRB_OK)) break;
     memcpy(end[k], s->integrator.y, (size_t)trb_state_size(system) * sizeof(double));

@@ -17,7 +17,7 @@ static trb_status create(const char *kind, const char *variant, const trb_settin
                          trb_simulation **s)
 {
   message = (trb_message){TRB_OK, ""};
-  const trb_status status = trb_simulation_create(built, motion, kind, variant, settings, time, state, s, &message);
+  const trb_status status = rig_create(built, motion, kind, variant, settings, time, state, s, &message);
   CHECK((status == TRB_OK) == (*s != NULL));
   return status;
 }

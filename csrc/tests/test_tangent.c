@@ -55,7 +55,7 @@ static int open_bench(bench *b, const trb_params *params, double share, double b
     return 0;
   if (!CHECK(trb_arrow_create(b->model->n_rollers, b->system->layout.hub_width, &arrow, NULL) == TRB_OK)) return 0;
   arrow->gamma = 1e-5;
-  CHECK(trb_arrow_factor(arrow, b->factors));
+  CHECK(trb_arrow_factor(arrow, arrow->gamma, NULL, arrow->n, b->factors));
   trb_arrow_free(arrow);
   for (int i = 0; i < trb_state_size(b->system); i++) {
     b->scale[i] = tolerance[trb_state_tolerance(b->system, i)];
