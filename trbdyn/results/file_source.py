@@ -312,12 +312,14 @@ class FileSource(Source):
         with _said(self.path):
             file = open_to_read(self.path)
         try:
-            self._held[me] = part_of(file, self.bearing)
+            with _said(self.path):
+                self._held[me] = part_of(file, self.bearing)
             yield
         finally:
             self._held.pop(me, None)
             self._checked.discard(me)
-            file.close()
+            with _said(self.path):
+                file.close()
 
 
 def _table(value: Any) -> dict[str, Any]:
