@@ -1,14 +1,11 @@
-"""How well the averages of a run are known: half widths of 95 % confidence intervals, from whole turns of the cage.
+"""How well the averages of a run are known: half widths of 95 % confidence intervals, from whole turns of the cage
+(docs/theory/whirl.md#how-well-a-mean-is-known).
 
-Each number of the summary that is an average is computed again in each turn of the cage (in several turns where there are
-many), and the values of the turns tell the error of the whole, with all slow motion that they leave possible
-(`trbdyn.observables.mean_error`). What is no mean, such as a percentile or a root mean square about the mean place, is first
-made one by its change with the records (its influence function), so that what a slow change adds to it counts. Each average
-is judged by itself. Where the cage's motion is not known to have settled, averages of that motion have no interval: what
-still creeps goes on where no scatter of this window reaches. Loads, films, speeds and losses follow the load at once; they
-have intervals, and what the cage takes of the losses in this window is added to those of torque and power loss, as another
-motion of the cage may take as much more or less. A second whirl that another start would lead to, and errors of the model,
-are not in it.
+Each average of the summary is computed again in each turn, or some turns, of the cage, and the values tell the error of the
+whole (`trbdyn.observables.mean_error`). What is no mean, such as a percentile, is first made one by its influence function.
+Where the cage's motion is not known to have settled, averages of that motion have no interval; those of loads, films, speeds and
+losses, which follow the load at once, have, and what the cage takes of the losses is added to those of torque and power loss.
+Another whirl that another start would lead to, and errors of the model, are not in them.
 """
 
 from __future__ import annotations

@@ -1,12 +1,10 @@
-"""Vibrations of rollers on their raceways: what the integration takes from them, and what that does to losses and loads.
+"""Vibrations of rollers on their raceways: what the integration takes from them, and what that does to losses and loads
+(docs/theory/numerics.md#vibrations-that-steps-do-not-resolve).
 
-A roller that was struck, or that hardly any load holds, vibrates on its raceways at some thousand cycles a second. What feeds the
-vibration has to be taken again by the normal damping of the contacts. Steps that do not resolve the vibration take energy from
-it, too (BDF damps what it does not follow); the vibrations are then smaller than they are in the bearing, and with them loads,
-rolling resistance and slip. What is left of them does not show this, but what was taken does: the residual of the energy audit
-stands beside the energy that damping took, and both together are what fed the vibrations. Where the integration's share is more
-than `SHARE`, and large enough beside the elastic energy to matter, a piece of the run is repeated with much tighter tolerances
-(`trbdyn.run.probe`, docs/theory/numerics.md#vibrations-that-steps-do-not-resolve).
+Steps that do not resolve a vibration take energy from it, as damping does: it is then smaller than it is in the bearing, and
+with it loads, rolling resistance and slip. The residual of the energy audit beside the energy that damping took tells how much.
+Where that is more than `SHARE`, and large enough beside the elastic energy, a piece of the run is repeated with tighter
+tolerances.
 """
 
 from __future__ import annotations

@@ -1,14 +1,9 @@
 """A watch over a run: whether its energy adds up, and whether it makes progress (docs/theory/numerics.md#watch-over-a-run).
 
 The core integrates every work and every loss beside the motion, so an error of the integration shows as energy that nobody put
-in or took out. The watch looks at it every few milliseconds of computing and sums it over windows of the run, over the whole
-run, and over all runs of one simulation since it began, so that a run in short pieces is judged as a whole. The figures of a
-run are averages over the whole of it, or over what follows its transient: the second half at least. So errors of windows are
-summed up, without their signs, over each such part, and one above `WARN` of what was turned over there gives a warning. A
-window of its own counts from `STOP` on. One in which more than that was made ends the run, as its losses, slip and forces would
-be wrong by as much. So does one in which that much is missing, if losses or the work put in are a large share of what was
-turned over. Over all runs it is looked at beside the losses as well: a bearing that loses little may turn over much more. What
-the integration takes from vibrations is compared with what damping takes, and its effect is measured (`trbdyn.run.vibrations`).
+in or took out. It is looked at every few milliseconds of computing and summed over windows of the run, over the run, and over
+all runs of one simulation. What is wrong with averages warns; what was made in a window, or is missing there of much that is
+lost or put in, ends the run. Vibrations have a judge of their own (`trbdyn.run.vibrations`).
 """
 
 from __future__ import annotations

@@ -1,15 +1,11 @@
 """How well a mean over a run is known: from its values in batches, with all time scales of the motion that they leave possible
 (docs/theory/whirl.md#how-well-a-mean-is-known).
 
-The error of a mean is told by the spectrum of the signal at frequency zero. A record of finite length shows that spectrum at the
-frequencies of half a wave, of one wave, of one and a half waves, ... in the record, by the cosine transform of the values in
-batches. Slow motion, such as the creep of the rollers, is seen in the lowest of them, and what is slower than the record in none.
-Whoever takes the spectrum for flat, as batch means with Student's t do, gives too narrow an interval as soon as something slow is
-in it. Here the spectrum is a constant and a slow part (an Ornstein-Uhlenbeck process), whose size and time scale are not known:
-a grid of them, from a fiftieth of the record to longer than the record, is weighed by how likely each makes the cosines seen
-(Bayes, with `NOTHING_SLOW` as the chance beforehand that there is no slow part), and the interval holds the mean in 95 of 100
-cases of this mixture. That is the method of Müller and Watson (Econometrica 86 (2018) 775-804) with an explicit prior. With
-nothing slow in sight it is Student's t with as many degrees of freedom as cosines, and somewhat wider for what may hide.
+The cosine transform of the values shows their spectrum at half a wave, one wave, ... in the record; the error of the mean is
+told by the spectrum at frequency zero. That is taken as a constant and a slow part (an Ornstein-Uhlenbeck process) of unknown
+size and time scale: a grid of them is weighed by how likely each makes the cosines seen (Bayes, with `NOTHING_SLOW` as the
+chance beforehand that there is none). It is the method of Müller and Watson (Econometrica 86 (2018) 775-804) with an explicit
+prior; with nothing slow in sight it is about Student's t.
 """
 
 from __future__ import annotations
