@@ -15,8 +15,9 @@ import numpy as np
 import trbdyn as trb
 from trbdyn.results.observables import energy
 from trbdyn.results.result import Result
+from trbdyn.run.energies import LEAST_ENERGY, STORED_SHARE
 from trbdyn.run.options import ACCURACY
-from trbdyn.run.watch import LEAST_ENERGY, SMALLEST_STEP, STORED_SHARE
+from trbdyn.run.watch import SMALLEST_STEP
 
 SPEEDS: Final = (0.01, 1.0, 10.0, 100.0, 1000.0, 3000.0, 10_000.0, 30_000.0)
 AXIAL: Final = (500.0, 1230.0, 4930.0, 20_000.0)
