@@ -305,13 +305,6 @@ def test_a_run_that_is_wrong_does_not_end_well_because_it_has_what_was_asked_for
     assert "the energy" in result.message
 
 
-def test_a_run_that_ends_without_it_says_so() -> None:
-    with pytest.warns(trb.RunWarning, match="without the confidence that was asked for: torque"):
-        result = rolling().run(duration=0.1, until={"torque": 1e-6})
-    assert result.success
-    assert any("without the confidence" in text for text in result.warnings)
-
-
 class Looked:
     """Records with narrow intervals and an answer to whether the motion has settled."""
 

@@ -23,6 +23,7 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
+from shared import environment
 
 import trbdyn as trb
 from trbdyn.errors import FileError, InputError
@@ -381,17 +382,12 @@ def test_an_unfinished_file_is_readable_and_says_so(tmp_path: Path, synthetic: A
 
 LOADER = """
 import sys
-sys.path.insert(0, sys.argv[2])
-import importlib.util
-spec = importlib.util.spec_from_file_location("synthetic_runs", sys.argv[2] + "/conftest.py")
-module = importlib.util.module_from_spec(spec)
-sys.modules["synthetic_runs"] = module
-spec.loader.exec_module(module)
+from synthetic import StubScene, make_run
 from trbdyn.results import result_file
 result_file.FLUSH_SECONDS = 0.0
-run = module.make_run(n=2001)
-part = result_file.Part(module.StubScene(), run.layout, run.fields)
-writer = result_file.ResultWriter(sys.argv[1], part, beside=sys.argv[3] == "True")
+run = make_run(n=2001)
+part = result_file.Part(StubScene(), run.layout, run.fields)
+writer = result_file.ResultWriter(sys.argv[1], part, beside=sys.argv[2] == "True")
 """
 
 WRITE_ON = """
@@ -420,10 +416,8 @@ def start_writer(tmp_path: Path, then: str, *, beside: bool) -> subprocess.Popen
     """A process that opens run.h5 for writing, flushes every record at once, and then does as told."""
     script = tmp_path / "writer.py"
     script.write_text(LOADER + then)
-    command = [sys.executable, str(script), str(tmp_path / "run.h5"), str(Path(__file__).parent), str(beside)]
-    return subprocess.Popen(
-        command, stdout=subprocess.PIPE, env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
-    )
+    command = [sys.executable, str(script), str(tmp_path / "run.h5"), str(beside)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, env=environment())
 
 
 @pytest.mark.skipif(not hasattr(os, "posix_fallocate"), reason="needs a limit of file size")
@@ -474,10 +468,15 @@ def test_records_wait_in_memory_only_until_flushed(tmp_path: Path, synthetic: An
 
 
 @pytest.mark.parametrize(
-    "expected",
-    [None, pytest.param(7, marks=pytest.mark.slow), 100, pytest.param(4001, marks=pytest.mark.slow), 100_000],
+    ("expected", "beside"),
+    [
+        (None, False),
+        (100, True),
+        (100_000, True),
+        *(pytest.param(some, True, marks=pytest.mark.slow) for some in (None, 7, 4001)),
+        *(pytest.param(some, False, marks=pytest.mark.slow) for some in (7, 100, 4001, 100_000)),
+    ],
 )
-@pytest.mark.parametrize("beside", [False, True])
 def test_what_is_written_is_what_was_recorded(
     tmp_path: Path,
     synthetic: Any,
@@ -725,20 +724,6 @@ def test_summary_leaves_out_what_was_not_recorded(whirling: Result) -> None:
     assert (values["settling"], values["settled"]) == ("unknown", False)
     assert values["energy_closure"] is None
     assert json.dumps(values, allow_nan=False)
-
-
-def test_the_package_gives_its_names_lazily() -> None:
-    code = "import sys, trbdyn; assert 'numpy' not in sys.modules; trbdyn.plot; print(sorted(trbdyn.__all__))"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert "Scene" in done.stdout
-    import trbdyn
-    from trbdyn.results.assembly import load as load_any
-
-    assert trbdyn.load is load_any
-    assert trbdyn.Result is Result
-    assert "Simulation" in dir(trbdyn)
-    with pytest.raises(AttributeError, match="wheels"):
-        trbdyn.wheels  # noqa: B018
 
 
 def test_fields_of_a_file_cannot_be_changed_by_mistake(tmp_path: Path) -> None:

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import json
 import math
-import os
-import subprocess
-import sys
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
+from shared import benchmark
 
 import trbdyn as trb
 
@@ -96,15 +93,10 @@ def test_loads_without_equilibrium_are_refused() -> None:
 
 
 def test_command(tmp_path: Path) -> None:
-    path = tmp_path / "closures.json"
-    command = [sys.executable, str(BENCHMARKS / "closures.py"), "--smoke", "--no-picture", "--json", str(path)]
-    environment = {name: value for name, value in os.environ.items() if name != "PYTHONSAFEPATH"}
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120, env=environment)
-    assert done.returncode == 0, done.stderr
-    found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    found, said = benchmark("closures", tmp_path, "--smoke")
     assert found["summary"]["bad"] == []
     assert found["results"][0]["closure"] < 1e-3
-    assert "below 0.001 from" in done.stdout
+    assert "below 0.001 from" in said
 
 
 def test_page_is_made_from_a_file(tmp_path: Path) -> None:

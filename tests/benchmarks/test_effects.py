@@ -5,15 +5,12 @@ The benchmark itself is slow: every change runs it once by `make bench SMOKE=1`.
 
 from __future__ import annotations
 
-import json
-import os
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
+from shared import benchmark
 
 ROOT = Path(__file__).resolve().parents[2]
 BENCHMARKS = ROOT / "benchmarks"
@@ -21,13 +18,7 @@ BENCHMARKS = ROOT / "benchmarks"
 
 @pytest.fixture(scope="module")
 def effects(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
-    path = tmp_path_factory.mktemp("effects") / "effects.json"
-    command = [sys.executable, str(BENCHMARKS / "effects.py"), "--smoke", "--no-picture", "--json", str(path)]
-    environment = {name: value for name, value in os.environ.items() if name != "PYTHONSAFEPATH"}
-    done = subprocess.run(command, capture_output=True, text=True, timeout=300, env=environment)
-    assert done.returncode == 0, done.stderr
-    found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-    return found
+    return benchmark("effects", tmp_path_factory.mktemp("effects"), "--smoke")[0]
 
 
 @pytest.mark.slow

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from shared import benchmark, environment
 
 from trbdyn import InputError, Scene, Simulation, Start, cases
 from trbdyn.model.bearing import Scatter
@@ -27,19 +28,7 @@ PRESET_FIGURES = {"wall_s_per_revolution", "real_time_factor", "error_cage_over_
 
 def smoke(name: str, folder: Path, *more: str, least: str = "--smoke") -> dict[str, Any]:
     """What a script writes when it does the least."""
-    path = folder / f"{name}.json"
-    command = [sys.executable, str(BENCHMARKS / f"{name}.py"), least, "--no-picture", "--json", str(path), *more]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=300, env=_environment())
-    assert done.returncode == 0, done.stderr
-    found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-    return found
-
-
-def _environment() -> dict[str, str]:
-    """Without PYTHONSAFEPATH, which would hide the scripts' own folder from them."""
-    import os
-
-    return {name: value for name, value in os.environ.items() if name != "PYTHONSAFEPATH"}
+    return benchmark(name, folder, least, *more)[0]
 
 
 @pytest.fixture(scope="module")
@@ -155,7 +144,7 @@ def test_what_was_measured_is_written_when_it_ends_early(tmp_path: Path) -> None
         f"w.main(['--smoke', '--no-picture', '--json', {str(path)!r}])"
     )
     done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, timeout=300, cwd=BENCHMARKS, env=_environment()
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=300, cwd=BENCHMARKS, env=environment()
     )
     assert done.returncode != 0
     found = json.loads(path.read_text(encoding="utf-8"))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import os
 import random
 import signal
@@ -19,17 +18,48 @@ from shared import environment
 import trbdyn as trb
 from trbdyn import study
 from trbdyn.errors import FileError
+from trbdyn.model.cases import paper_30310
 from trbdyn.results.file_source import FileSource
 from trbdyn.run import checkpoint
 from trbdyn.run.options import RunOptions
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
 
-_spec = importlib.util.spec_from_file_location("restart_runs", Path(__file__).parent / "conftest.py")
-assert _spec is not None
-assert _spec.loader is not None
-runs = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(runs)
+SCHEDULE: dict[str, Any] = {"duration": 0.06, "save_every": 1e-4, "checkpoint_every": 4e-3}
+
+RUN = """
+import sys
+import trbdyn as trb
+from trbdyn.results import result_file
+from trbdyn.model.cases import paper_30310
+
+result_file.FLUSH_SECONDS = 0.02
+scene = paper_30310(3000.0, 4930.0, start=trb.Start.whirl(0.9))
+print("ready", flush=True)
+trb.Simulation(scene).run(duration=0.06, save_every=1e-4, checkpoint_every=4e-3, output=sys.argv[1])
+"""
+
+RESUME = """
+import sys
+import trbdyn as trb
+from trbdyn.results import result_file
+
+result_file.FLUSH_SECONDS = 0.02
+print("ready", flush=True)
+trb.resume(sys.argv[1])
+"""
+
+
+def whirl() -> trb.Scene:
+    """The scene of all runs here: chaotic enough that one bit more or less shows at its end."""
+    return paper_30310(3000.0, 4930.0, start=trb.Start.whirl(0.9))
+
+
+@pytest.fixture(scope="module")
+def uninterrupted(tmp_path_factory: pytest.TempPathFactory) -> trb.Result:
+    """The run without an interruption."""
+    path: Path = tmp_path_factory.mktemp("uninterrupted") / "run.h5"
+    return trb.Simulation(whirl()).run(**SCHEDULE, output=path)
 
 
 def start(script: str, path: Path) -> subprocess.Popen[bytes]:
@@ -66,7 +96,7 @@ def test_random_kills_change_no_bit(tmp_path: Path, uninterrupted: trb.Result, s
     draw = random.Random(seed)
     path = tmp_path / "run.h5"
     wall = float(uninterrupted.stats["wall_s"])
-    kills, script = 0, runs.RUN
+    kills, script = 0, RUN
     while kills < 2:
         process = start(script, path)
         time.sleep(draw.uniform(0.0, 0.45) * wall)
@@ -76,7 +106,7 @@ def test_random_kills_change_no_bit(tmp_path: Path, uninterrupted: trb.Result, s
             # the run had ended before the signal came: once more from the start
             same(trb.load(path), uninterrupted)
             path.unlink()
-            script = runs.RUN
+            script = RUN
             continue
         assert process.returncode == -signal.SIGKILL, said.decode()
         kills += 1
@@ -86,7 +116,7 @@ def test_random_kills_change_no_bit(tmp_path: Path, uninterrupted: trb.Result, s
             np.testing.assert_array_equal(partial.time, uninterrupted.time[: len(partial)])
         newest = checkpoint.checkpoint_path(path)
         if newest.exists() or checkpoint.previous_path(newest).exists():
-            script = runs.RESUME
+            script = RESUME
         else:
             # killed before its first checkpoint: nothing to resume, and a new run replaces no file unasked
             path.unlink(missing_ok=True)
@@ -99,7 +129,7 @@ def test_random_kills_change_no_bit(tmp_path: Path, uninterrupted: trb.Result, s
 
 def test_a_reader_follows_live(tmp_path: Path, uninterrupted: trb.Result) -> None:
     path = tmp_path / "run.h5"
-    process = start(runs.RUN, path)
+    process = start(RUN, path)
     seen: list[int] = []
     while process.poll() is None:
         time.sleep(0.03)
@@ -116,14 +146,14 @@ def test_a_reader_follows_live(tmp_path: Path, uninterrupted: trb.Result) -> Non
 
 def test_one_run_one_writer(tmp_path: Path) -> None:
     path = tmp_path / "run.h5"
-    process = start(runs.RUN, path)
+    process = start(RUN, path)
     while not checkpoint.checkpoint_path(path).exists():
         time.sleep(0.01)
     try:
         with pytest.raises(FileError, match="another run is writing it"):
             trb.resume(path)
         with pytest.raises(FileError, match="another run is writing it"):
-            trb.Simulation(runs.whirl()).run(duration=1e-3, output=path, overwrite=True)
+            trb.Simulation(whirl()).run(duration=1e-3, output=path, overwrite=True)
     finally:
         process.kill()
         process.communicate()
@@ -134,7 +164,7 @@ def test_one_run_one_writer(tmp_path: Path) -> None:
 
 def test_the_command_line_resumes(tmp_path: Path, uninterrupted: trb.Result) -> None:
     path = tmp_path / "run.h5"
-    process = start(runs.RUN, path)
+    process = start(RUN, path)
     while not checkpoint.previous_path(checkpoint.checkpoint_path(path)).exists():
         time.sleep(0.005)
     process.kill()
@@ -157,7 +187,7 @@ resource.setrlimit(resource.RLIMIT_FSIZE, (MOST, MOST))
 )
 def test_a_full_disk_loses_nothing(tmp_path: Path, uninterrupted: trb.Result, limit: int) -> None:
     path = tmp_path / "run.h5"
-    process = start(FULL.replace("MOST", str(limit)) + runs.RUN, path)
+    process = start(FULL.replace("MOST", str(limit)) + RUN, path)
     _, said = process.communicate()
     assert process.returncode == 1
     assert b"FileError" in said
@@ -213,7 +243,7 @@ def test_workers_of_a_killed_study_end_and_the_next_start_cleans_up(tmp_path: Pa
     while any(map(is_alive, workers)) and time.monotonic() < until:
         time.sleep(0.05)
     assert not [pid for pid in workers if is_alive(pid)]
-    cases = study.grid(runs.whirl(), {"scene.speed_rpm": [1000]}, RunOptions(duration=1e-4))
+    cases = study.grid(whirl(), {"scene.speed_rpm": [1000]}, RunOptions(duration=1e-4))
     (folder / f"..{cases.cases[0].name}.h5.part.0123456789ab.new").touch()
     study.run(cases, folder, executor="serial")
     # a worker on a machine with much other work may have had no time to take its own file away; its case replaces it

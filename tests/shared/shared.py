@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import os
+import subprocess
 import sys
 from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,3 +66,13 @@ def cut_after(time: float) -> Callable[[trb.Simulation], None]:
 def environment(**more: str) -> dict[str, str]:
     """For a process that finds the package where this one does."""
     return {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry), **more}
+
+
+def benchmark(name: str, folder: Path, *words: str) -> tuple[dict[str, Any], str]:
+    """What a script in benchmarks/ writes as JSON into a folder, and what it prints."""
+    path = folder / f"{name}.json"
+    script = Path(__file__).resolve().parents[2] / "benchmarks" / f"{name}.py"
+    command = [sys.executable, str(script), *words, "--no-picture", "--json", str(path)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300, env=environment(), check=False)
+    assert done.returncode == 0, done.stderr
+    return json.loads(path.read_text(encoding="utf-8")), done.stdout
