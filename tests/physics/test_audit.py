@@ -157,24 +157,6 @@ def test_every_loss_is_a_loss(kit: SimpleNamespace, case: str, share: float) -> 
         assert np.diff(result[f"loss_{name}"]).min() >= -1e-12, name
 
 
-OFF = {
-    "rolling": PAPER.replace(rolling_resistance=False),
-    "rolling_pressure": PAPER,
-    "rib": PAPER.replace(back_rib=False, planar=True),
-    "front_rib": PAPER.replace(front_rib=False),
-    "pocket": PAPER.replace(pocket_bars=False, pocket_ends=False),
-    "damping": PAPER,
-}
-
-
-@pytest.mark.parametrize("name", OFF)
-def test_an_effect_that_is_off_loses_nothing(kit: SimpleNamespace, name: str) -> None:
-    result = kit.simulate(OFF[name]).run(duration=2e-3)
-    assert not result[f"loss_{name}"].any()
-    assert not result[f"power_{name}"].any()
-    assert result.energy_audit.dissipated > 0.0
-
-
 def test_without_friction_nothing_is_lost(kit: SimpleNamespace) -> None:
     result = kit.simulate(Effects.frictionless()).run(duration=2e-3)
     for name in LOSSES:

@@ -84,14 +84,6 @@ def test_shaft_pays(kit: SimpleNamespace) -> None:
     assert more > 0.5 * np.mean(flooded["power_drag"])
 
 
-def test_off(kit: SimpleNamespace) -> None:
-    for effects in (PAPER, PAPER.replace(drag_coefficient=5.0)):
-        result = kit.simulate(effects).run(duration=2e-3)
-        assert result.counters["drag_rollers"] == result.counters["drag_cages"] == 0
-        assert not result["power_drag"].any()
-        assert not result["loss_drag"].any()
-
-
 @pytest.mark.parametrize(("field", "value"), [("oil_fill", -0.1), ("oil_fill", 1.1), ("drag_coefficient", 25.0)])
 def test_bad_input(field: str, value: float) -> None:
     with pytest.raises(InputError, match=field):

@@ -11,7 +11,6 @@ import pytest
 import trbdyn as trb
 from trbdyn import Effects, InputError
 from trbdyn.model.scene import Start
-from trbdyn.run.toml_case import effects_from_table
 
 PAPER = Effects.paper()
 FILMS = ("film_nodes", "thermal_nodes", "traction_nodes", "rolling_nodes")
@@ -229,20 +228,6 @@ def test_pockets_that_are_clear_are_counted_as_such() -> None:
     count = simulation.counters
     faces = 12 * len(scene.bearing.pocket_of(0).faces)
     assert count["pocket_tests"] == count["pocket_culled"] >= faces * count["force_evaluations"]
-
-
-@pytest.mark.parametrize("given", [{"damping": "film"}, {}])
-def test_a_coefficient_that_would_act_nowhere_is_refused(given: dict[str, Any]) -> None:
-    with pytest.raises(InputError, match="damping_race = 5"):
-        Effects(damping_race=5.0, **given)
-    with pytest.raises(InputError, match="film_damping = "):
-        Effects(
-            damping="hunt_crossley", film_damping=2e-5, **{name: given[name] for name in given if name != "damping"}
-        )
-    whole = Effects(damping="hunt_crossley", damping_race=5.0).replace(damping="film")
-    assert Effects.from_dict(whole.to_dict()) == whole
-    with pytest.raises(InputError, match=r"effects\.damping_race = 5"):
-        effects_from_table({"damping_race": 5.0, **given})
 
 
 def test_a_table_of_an_earlier_version_is_taken() -> None:

@@ -12,6 +12,7 @@ from scipy.optimize import brentq
 
 import trbdyn as trb
 from trbdyn import Effects, InputError
+from trbdyn.run.toml_case import effects_from_table
 
 FILM = Effects.frictionless().replace(damping="film", quadrature="gauss", n_slices=8, gravity=False)
 OFF = FILM.replace(damping="off")
@@ -115,6 +116,8 @@ def test_a_coefficient_that_would_act_nowhere_is_refused(changes: dict, field: s
     if "damping" not in changes:
         with pytest.raises(InputError, match=rf"{field} = .*acts with damping"):
             Effects(**changes)
+        with pytest.raises(InputError, match=rf"effects\.{field} = .*acts with damping"):
+            effects_from_table(changes)
 
 
 def test_laws_may_be_changed_whatever_was_given_to_another_one() -> None:
