@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import subprocess
 import sys
-import threading
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -90,22 +89,6 @@ def test_runs_repeat(kit: SimpleNamespace, reference: tuple[str, Simulation]) ->
     sim = started(kit, integrator=integrator)
     sim.run(duration=SPANS[integrator])
     assert same(sim, wanted)
-
-
-def test_threads_do_not_meet(kit: SimpleNamespace, reference: tuple[str, Simulation]) -> None:
-    """Different simulations at once in several threads: each steps as it does alone."""
-    integrator, wanted = reference
-    sims = [started(kit, integrator=integrator) for _ in range(2)]
-    other = kit.simulate(Effects.standard(), scenery={"speed_rpm": 1000.0}, integrator=integrator)
-    threads = [threading.Thread(target=sim.run, kwargs={"duration": SPANS[integrator]}) for sim in (*sims, other)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    alone = kit.simulate(Effects.standard(), scenery={"speed_rpm": 1000.0}, integrator=integrator)
-    alone.run(duration=SPANS[integrator])
-    assert all(same(sim, wanted) for sim in sims)
-    assert same(other, alone)
 
 
 @pytest.mark.parametrize("integrator", SPANS)

@@ -179,14 +179,6 @@ class TestViscosity:
         assert roelands == pytest.approx(barus, rel=1e-4)
         assert dicke == pytest.approx(barus, rel=1e-4)
 
-    def test_roelands_formula(self) -> None:
-        eta0, alpha, pressure = 0.0346, 1.97e-8, 6e8
-        base = math.log(eta0) + 9.67
-        z = alpha * 1.962e8 / base
-        expected = base * ((1 + pressure / 1.962e8) ** z - 1)
-        assert laws.viscosity_roelands(pressure, alpha, eta0, 25.0) == pytest.approx(expected, rel=1e-13)
-        assert expected < alpha * pressure
-
 
 class TestSlideRoll:
     def test_cage_ratio(self) -> None:

@@ -10,7 +10,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from trbdyn import laws
-from trbdyn.errors import InputError
 
 DICKE = (327.79, 2.9862, 4.419e-3, 3.0115e-4)
 BOUNDARY = (0.1, 22.28, 181.46)
@@ -179,27 +178,3 @@ def test_slide_roll_of_the_cage(speed: float, entrainment: float) -> None:
     ratio = laws.slide_roll_cage(speed, entrainment)
     assert 0 < ratio <= 2.0 + 1e-12
     assert laws.slide_roll_cage(STEP * speed, entrainment) >= ratio
-
-
-class TestCalls:
-    def test_names_and_documentation(self) -> None:
-        for name in laws.names():
-            law = getattr(laws, name)
-            assert law.__name__ == name
-            assert len(law.__doc__) > 20
-
-    def test_broadcast_names_and_shape(self) -> None:
-        sigma, d = np.geomspace(0.1, 10, 4)[:, None], np.array([1.0, 3.0, 9.0])
-        table = laws.traction_muraki_kimura(d=d, sigma=sigma)
-        assert table.shape == (4, 3)
-        assert table[2, 1] == laws.traction_muraki_kimura(sigma[2, 0], 3.0)
-        assert isinstance(laws.smooth_max(1.0, 0.0, 0.5), float)
-        assert laws.smooth_max(np.zeros((0, 3)), 0.0, 0.5).shape == (0, 3)
-
-    def test_wrong_calls(self) -> None:
-        with pytest.raises(TypeError, match=r"film_line_rigid: .*takes \(W, U\)"):
-            laws.film_line_rigid(1.0)
-        with pytest.raises(InputError, match="broadcast"):
-            laws.film_line_rigid(np.ones(2), np.ones(3))
-        with pytest.raises(AttributeError, match="no law 'film'"):
-            _ = laws.film

@@ -64,7 +64,7 @@ def same(result: trb.Result, reference: trb.Result) -> None:
         np.testing.assert_array_equal(result.peaks[name], reference.peaks[name], err_msg=name)
 
 
-@pytest.mark.parametrize("save_every", [7e-6, 3.3e-5, 1e-3, 1.0])
+@pytest.mark.parametrize("save_every", [3.3e-5, 1.0])
 def test_output_times_change_no_bit(reference: trb.Result, save_every: float) -> None:
     other = run(save_every=save_every)
     np.testing.assert_array_equal(other.final_state, reference.final_state)
