@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -365,81 +366,37 @@ def test_a_number_shows(kit: SimpleNamespace, name: str) -> None:
     assert np.abs(two - one).max() > 1e-9 * np.abs(one).max()
 
 
+BODY = ("mass", "inertia_axial", "inertia_transverse", "offset", "damping", "damping_turns")
+SUPPORT = ("support_radial", "support_axial", "support_tilt", "support_position")
+ELSEWHERE = {
+    "physics/test_inputs_act.py": "poisson_ratio coulomb_speed boundary_limit boundary_decay lambda_full lambda_boundary damping"
+    " conductivity temperature_coefficient damping_race damping_cage cage_inertia_axial cage_inertia_transverse"
+    " front_rib_clearance",
+    "physics/test_cylindrical.py": "end_radius radial_clearance rib_clearance outer_rib outer_front_rib",
+    "physics/test_film_damping.py": "film_damping film_damping_depth",
+    "physics/test_drag.py": "cage_face_inner cage_face_outer",
+    "physics/test_contacts.py": "pocket_film roughness_pocket",
+    "physics/test_free_ring.py": " ".join(f"ring_{name}" for name in (*BODY, *SUPPORT, "unbalance", "unbalance_angle")),
+    "physics/test_housing.py": " ".join(f"outer_{name}" for name in (*BODY, *SUPPORT)),
+    "physics/test_assembly.py": "ring_carried ring_turned ring_shift",
+    "physics/test_shared_housing.py": "outer_carried outer_turned",
+    "physics/test_effects.py": "quadrature with_cage planar lubrication traction thermal rolling_resistance back_rib front_rib"
+    " rolling_pressure_force rib_film rib_turning guidance pocket_bars pocket_ends pocket_edges profile viscosity_law n_rollers"
+    " n_slices ring_free outer_free outer_turns cage_modes",
+    "laws/test_in_contacts.py": "asperity_factor asperity_exponent rib_asperity_factor rib_asperity_exponent mixed_law"
+    " rib_boundary_limit replenishment",
+    "laws/test_oracles.py": "oil_height flooded_gaps hysteresis",
+    "geometry/test_profiles.py": "profile_a profile_c profile_d profile_k",
+    "geometry/test_interference.py": "front_rib_low front_rib_high",
+}
+"""Numbers that other tests change, and where; switches, whole numbers and shapes among them."""
+
+
 def test_nothing_is_forgotten() -> None:
-    """Numbers that have no law here are switches, whole numbers and shapes, which other tests change one by one."""
-    here = {
-        *LAWS,
-        *SHOWS,
-        "poisson_ratio",
-        "coulomb_speed",
-        "boundary_limit",
-        "boundary_decay",
-        "lambda_full",
-        "lambda_boundary",
-        # of cylindrical bearings (test_cylindrical.py)
-        "end_radius",
-        "radial_clearance",
-        "rib_clearance",
-        "outer_rib",
-        "outer_front_rib",
-    }
-    here |= {"damping", "conductivity", "temperature_coefficient", "damping_race", "damping_cage", "cage_inertia_axial"}
-    here |= {"cage_inertia_transverse", "front_rib_clearance", "film_damping", "film_damping_depth"}
-    # of laws: tests/laws/test_in_contacts.py, tests/physics/test_drag.py, test_contacts.py and test_film_damping.py there
-    here |= {"profile_a", "profile_c", "profile_d", "profile_k"}  # tests/geometry/test_profiles.py
-    here |= {"asperity_factor", "asperity_exponent", "rib_asperity_factor", "rib_asperity_exponent"}
-    here |= {
-        "replenishment",
-        "oil_height",
-        "flooded_gaps",
-        "hysteresis",
-        "rib_boundary_limit",
-        "cage_face_inner",
-        "cage_face_outer",
-        "pocket_film",
-        "roughness_pocket",
-    }
-    switches = {"quadrature", "with_cage", "planar", "lubrication", "traction", "thermal", "rolling_resistance"}
-    switches |= {
-        "rolling_pressure_force",
-        "back_rib",
-        "front_rib",
-        "rib_film",
-        "rib_turning",
-        "mixed_law",
-        "guidance",
-        "pocket_bars",
-        "pocket_ends",
-        "pocket_edges",
-    }
-    switches |= {
-        "profile",
-        "viscosity_law",
-        "n_rollers",
-        "n_slices",
-        "ring_free",
-        "outer_free",
-        "outer_turns",
-        "cage_modes",
-    }
-    here |= OF_FREE_RINGS
-    assert here | switches | set(TRACTION) | set(RIBS) | set(PROFILES) >= set(scene_entries(trb.cases.paper_30310()))
+    known = {name for names in ELSEWHERE.values() for name in names.split()}
+    assert {*LAWS, *SHOWS, *TRACTION, *PROFILES} | known >= set(scene_entries(trb.cases.paper_30310()))
+    assert all((Path(__file__).parents[1] / place).is_file() for place in ELSEWHERE)
 
-
-OF_FREE_RINGS = {
-    f"ring_{name}" for name in ("mass", "inertia_axial", "inertia_transverse", "offset", "damping", "damping_turns")
-}
-OF_FREE_RINGS |= {"ring_unbalance", "ring_unbalance_angle"}
-# of bearings that share a shaft: tests/physics/test_assembly.py, csrc/tests/test_assembly.c
-OF_FREE_RINGS |= {"ring_carried", "ring_turned", "ring_shift"}
-OF_FREE_RINGS |= {f"ring_support_{name}" for name in ("radial", "axial", "tilt", "position")}
-OF_FREE_RINGS |= {
-    f"outer_{name}" for name in ("mass", "inertia_axial", "inertia_transverse", "offset", "damping", "damping_turns")
-}
-# of bearings in one housing: tests/physics/test_shared_housing.py, csrc/tests/test_assembly.c
-OF_FREE_RINGS |= {"outer_carried", "outer_turned"}
-OF_FREE_RINGS |= {f"outer_support_{name}" for name in ("radial", "axial", "tilt", "position")}
-"""Numbers of free rings: tests/physics/test_free_ring.py, tests/physics/test_housing.py."""
 
 TRACTION = {
     "eyring_stress": 4e6,
@@ -453,8 +410,6 @@ TRACTION = {
     "speed_floor": 0.9,
     "rolling_blend": 0.9,
 }
-RIBS = ("front_rib_low", "front_rib_high")
-"""Edges of the front rib: tests/geometry."""
 PROFILES = {"profile_k1": 1.8, "profile_k2": 0.6, "profile_zm": 1e-6, "profile_load": 4000.0}
 PROFILES |= {"profile_a": 0.0006, "profile_c": 0.018, "profile_d": 1e-3, "profile_k": 2.2}
 
