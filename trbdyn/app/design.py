@@ -91,8 +91,8 @@ class Built:
 
     bearing: Bearing | None = None  # the bearing with all changes; None where it cannot be made
     base: Bearing | None = None  # the bearing before the changes: what is estimated of it, and which fields it has
-    subject: Subject | None = None  # what is run
-    options: RunOptions = field(default_factory=RunOptions)  # how it is run
+    subject: Subject | None = None
+    options: RunOptions = field(default_factory=RunOptions)
     tables: dict[str, Any] = field(default_factory=dict)  # the case
     problems: dict[str, str] = field(default_factory=dict)
     """What is wrong, by the path of the field; '' where no field has it."""

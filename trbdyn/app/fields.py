@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Final, Literal, get_args, get_origin
 
-from trbdyn.base.shown import field_rows
+from trbdyn.base.shown import field_rows, field_texts
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.lubricants import OILS
 from trbdyn.model.pocket_shapes import SHAPES
@@ -117,10 +117,10 @@ def pocket_fields(shape: str) -> list[Field]:
     """The shape of the pockets, and the numbers of that shape."""
     words = "What the bars of the pockets look like; the drawing follows."
     made = [Field(SHAPE, "shape of the pockets", choices=tuple(SHAPES), default="default", meaning=words)]
+    texts = field_texts(SHAPES[shape])
     for one in list(inspect.signature(SHAPES[shape]).parameters.values())[1:]:
         default = 0.0 if one.default is inspect.Parameter.empty else one.default
-        text = re.search(rf"{one.name} : .*\n\s+(.*)", inspect.getdoc(SHAPES[shape]) or "")
-        said = text[1] if text else ""
+        said = texts.get(one.name, "")
         si = "deg" if one.name.endswith("_deg") else "m" if "(m)" in said else ""
         choices = ("leading", "trailing") if one.name == "missing" else ()
         path = f"bearing.cage.pocket.{one.name}"

@@ -10,7 +10,7 @@ import html
 import inspect
 import re
 import textwrap
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, Final
@@ -137,13 +137,13 @@ def value_text(value: Any) -> str:
     return "free" if value is None else str(value)
 
 
-def field_texts(kind: type) -> dict[str, str]:
+def field_texts(kind: Callable[..., Any]) -> dict[str, str]:
     """What each field of a model is, from the part "Parameters" of its docstring."""
     return {name: text for name, (_, text) in described_fields(kind).items()}
 
 
 @cache
-def described_fields(kind: type) -> Mapping[str, tuple[str, str]]:
+def described_fields(kind: Callable[..., Any]) -> Mapping[str, tuple[str, str]]:
     """What stands in the part "Parameters" of a docstring: of each field what values it has, and what it is."""
     text = inspect.cleandoc(kind.__doc__ or "")
     found = re.search(r"^Parameters\n-+\n(.*?)(?=^\w+\n-+\n|\Z)", text, re.MULTILINE | re.DOTALL)

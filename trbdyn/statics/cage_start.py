@@ -28,7 +28,7 @@ STRONGLY_PRESSED: Final = 2e-6
 
 
 def place_cage(model: _core.Model, scene: Scene, motion: RingMotion, vector: Array) -> None:
-    """Put the cage into a state whose rollers are placed, as a run begins, and rollers that carry nothing into their pockets."""
+    """Put the cage where a run begins, and rollers that carry nothing into their pockets; the state has all rollers' places."""
     state, start, cage = StateView(model.state_layout(), vector), scene.start, scene.bearing.cage
     orbit = scene.orbit_speed(start.time)
     onlooker = motion.open(model, motion.start, vector)

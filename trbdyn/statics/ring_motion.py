@@ -52,9 +52,9 @@ class RingMotion:
     table: Array  # as of `trbdyn.model.flatten.motion_table`, shape (K, 44)
     period: float  # after the last knot the last part of the table, this long, repeats (s); 0: everything stays
     start: float  # time of the start (s)
-    angle_time: float  # the time of the two angles below (s)
-    shaft_angle: float  # (rad)
-    outer_angle: float  # of the outer ring (rad)
+    angle_time: float  # when both angles are counted (s)
+    shaft_angle: float  # angle of the shaft then (rad)
+    outer_angle: float  # angle of the outer ring then (rad)
 
     def displacement(self, time: float) -> Array:
         """Where the ring stands at a time (s): translation (m), rotation (rad), shape (5,)."""

@@ -155,9 +155,9 @@ class SeatedBearing:
 class Seated:
     """What the core takes of one bearing, or of several on one shaft."""
 
-    bearings: tuple[SeatedBearing, ...]  # the bearings
+    bearings: tuple[SeatedBearing, ...]
     vector: Array  # the state at the start
-    time: float  # when that is (s)
+    time: float  # of the start (s)
 
     @property
     def moves(self) -> bool:

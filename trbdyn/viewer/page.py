@@ -59,9 +59,9 @@ class _Block:
 class Shown:
     """A bearing that a page shows."""
 
-    result: Result  # the run
-    shapes: Shapes  # meshes of its bearing
-    frames: Frames  # frames of it
+    result: Result
+    shapes: Shapes
+    frames: Frames
     name: str = ""  # its name on the shaft; empty where it is alone
     place: float = 0.0  # where its roller-centre plane stands along the axis, from the middle of the picture (m)
     turned: bool = False  # whether it is turned about the x axis, so that its own axis points the other way
