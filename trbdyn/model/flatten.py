@@ -196,25 +196,21 @@ def input_error_of_core(error: Exception, entries: Mapping[str, Entry]) -> Input
 
 def scene_entries(scene: Scene) -> Entries:
     """Numbers of a scene, by their names in the core's table; paths start at the scene."""
+    size = {"pitch_diameter": scene.bearing.pitch_diameter, "roller_diameter": scene.bearing.roller.diameter}
+    decline = replenishment_decline(scene.lubricant, scene.effects.replenishment, **size)
     return {
         **prefixed("bearing", bearing_entries(scene.bearing)),
         "land_clearance": Entry(("bearing", "land", "clearance"), running_clearance(scene)),
         **prefixed("lubricant", lubricant_entries(scene.lubricant)),
         **prefixed("effects", effects_entries(scene.effects)),
         **prefixed("effects", rib_entries(scene.bearing, scene.effects)),
-        "replenishment": Entry(("effects", "replenishment"), _decline(scene)),
+        "replenishment": Entry(("effects", "replenishment"), decline),
         "n_slices": Entry(("effects", "n_slices"), float(nodes(scene))),
         **ring_entries(scene),
         **housing_entries(scene),
         "outer_turns": Entry(("outer_speed_rpm",), float(scene.outer_turns)),
         **elastic_entries(scene),
     }
-
-
-def _decline(scene: Scene) -> float:
-    bearing = scene.bearing
-    size = {"pitch_diameter": bearing.pitch_diameter, "roller_diameter": bearing.roller.diameter}
-    return replenishment_decline(scene.lubricant, scene.effects.replenishment, **size)
 
 
 def rib_entries(bearing: Bearing, effects: Effects) -> Entries:

@@ -93,7 +93,8 @@ def drafted_pocket(bearing: Bearing, lean_deg: float) -> Pocket:
         Angle of the contact line around the roller, from the circumferential direction outward (deg), -80 to 80.
     """
     lean = math.radians(number_of("lean_deg", lean_deg, "deg", ge=-LARGEST_LEAN_DEG, le=LARGEST_LEAN_DEG))
-    bars = [_bar(bearing, side, lean, _rectangle(bearing)) for side in SIDES]
+    half = 0.5 * bearing.roller.effective_length
+    bars = [_bar(bearing, side, lean, _box(-half, half, 0.5 * bearing.cage.bar_width)) for side in SIDES]
     return Pocket(faces=(*bars, large_end_wall(bearing), small_end_wall(bearing)))
 
 
@@ -253,11 +254,6 @@ def _bar(
         v=tuple(np.cross(-outward, along)),
         outline=tuple(outline),
     )
-
-
-def _rectangle(bearing: Bearing) -> Outline:
-    half = 0.5 * bearing.roller.effective_length
-    return _box(-half, half, 0.5 * bearing.cage.bar_width)
 
 
 def _box(start: float, end: float, half_width: float) -> Outline:

@@ -255,9 +255,7 @@ def _without_idle(points: FloatArray, is_ccw: bool) -> FloatArray:
     if not is_ccw:
         points = points[::-1]
     while len(points) > 3:
-        before, after = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
-        turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-        size = np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
+        turn, size = _turns(points)
         idle = np.abs(turn) <= 1e-8 * size
         if not idle.any():
             break
@@ -265,14 +263,16 @@ def _without_idle(points: FloatArray, is_ccw: bool) -> FloatArray:
     return points
 
 
-def _turns(points: FloatArray) -> FloatArray:
+def _turns(points: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """How much the outline turns at each corner, times the lengths of both sides there; and these lengths multiplied."""
     before, after = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
     size = np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
-    return (before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]) / np.where(size > 0.0, size, 1.0)
+    return before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], size
 
 
 def _is_convex(points: FloatArray) -> bool:
-    return bool(np.all(_turns(points) > 1e-9))
+    turn, size = _turns(points)
+    return bool(np.all(turn / np.where(size > 0.0, size, 1.0) > 1e-9))
 
 
 def _few_corners(outline: FloatArray) -> list[FloatArray]:
