@@ -675,6 +675,20 @@ def test_an_open_file_is_checked_once_for_all_fields(
     assert len(heads) == 2
 
 
+def test_damage_that_shows_when_a_bearing_is_looked_for_is_said(
+    tmp_path: Path, synthetic: Any, stub_scene: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The file was damaged after it was loaded: HDF5's own error is none that users can do something with."""
+    result = load(write(tmp_path / "run.h5", synthetic, stub_scene))
+
+    def broken(*_: Any) -> None:
+        raise RuntimeError("bad object header version number")
+
+    monkeypatch.setattr(file_source, "part_of", broken)
+    with pytest.raises(FileError, match=r"run\.h5.*damaged"), result._source.held_open():
+        raise AssertionError
+
+
 def test_a_file_replaced_behind_its_result_is_noticed(tmp_path: Path, synthetic: Any, stub_scene: Any) -> None:
     path = write(tmp_path / "run.h5", synthetic, stub_scene)
     loaded = load(path)
