@@ -8,12 +8,12 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from importlib import resources
 from typing import Any, Final
 
 import numpy as np
 
 from trbdyn.base.expected import expect
+from trbdyn.base.shipped import DATA
 from trbdyn.model.assembly import Assembly, Subject
 from trbdyn.model.effects import Effects
 from trbdyn.model.roller import Profile
@@ -112,7 +112,7 @@ def _power(subject: Subject) -> float:
 @cache
 def record() -> Mapping[str, Any]:
     """Summary of ``benchmarks/validation``: number of bearings and of torques, mean and largest error (%)."""
-    found: dict[str, Any] = json.loads((resources.files("trbdyn") / "data" / RECORD).read_text("utf-8"))
+    found: dict[str, Any] = json.loads((DATA / RECORD).read_text(encoding="utf-8"))
     return found
 
 
