@@ -192,7 +192,7 @@ def test_a_drawn_arc_is_the_crowned_profile_turned_and_in_other_units(tmp_path: 
         trace = trb.read_trace(drawing(tmp_path / "a.dxf", arc(scale, turn), units), LENGTH)
         assert trace.drops == pytest.approx(radius - np.sqrt(radius**2 - trace.stations**2), abs=2e-9)
         assert trace.angle_deg == pytest.approx(turn, abs=1e-6)
-    with pytest.raises(trb.InputError, match=r"position_unit.*tells no unit"):
+    with pytest.raises(trb.InputError, match=r"position_unit.*names no unit"):
         trb.read_trace(drawing(tmp_path / "a.dxf", arc(1e3, 0.0), 0), LENGTH)
 
 

@@ -228,7 +228,7 @@ def show_compare(page: Page) -> None:
             page.bench.start("compare", " and ".join(name[:4] for name in both), {"files": files, "names": titles}, {})
 
         ui.button("Compare", on_click=compare).props('no-caps data-path="compare"')
-        ui.label("The comparison stands under Results.").classes("text-gray-600")
+        ui.label("The comparison is under Results.").classes("text-gray-600")
 
     comparison()
     page.comparison = comparison
@@ -269,7 +269,7 @@ def show_sweep(page: Page) -> None:
 
         ui.button("Run the sweep", on_click=sweep).props('no-caps data-path="sweep"')
         ui.label(
-            "Each value is a run of the design as it stands, as long as Run says. The table stands under Results."
+            "Each value is a run of the design as it is, as long as Run says. The table is under Results."
         ).classes("text-gray-600")
 
     sweeps()

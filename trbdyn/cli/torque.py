@@ -24,7 +24,7 @@ from trbdyn.errors import MISSING, InputError
     ),
     argument("--temperatures", "temperatures of the oil (default: that of the case)", "C", type=float, nargs="+"),
     argument("--tolerance", "change of a settled torque (default: 0.01)", "SHARE", type=float, default=0.01),
-    argument("--bands", "draw inputs that nobody knows exactly, and tell the band of each torque"),
+    argument("--bands", "draw inputs that nobody knows exactly, and give the band of each torque"),
     argument("--samples", "draws of each point (default: 16)", "N", type=int, default=16),
     WORKERS,
     argument("-o --output", "writes NAME.nc and NAME.png (default: CASE_torque)", "NAME"),

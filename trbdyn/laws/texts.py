@@ -26,7 +26,7 @@ ARGUMENTS: Final[dict[str, tuple[str, str]]] = {
     "elastic_over_rigid": ("1", "film of the piezoviscous-elastic regime over that of the isoviscous-rigid one"),
     "entrainment_speed": (
         "m/s",
-        "speed that stands for rolling where surfaces do not roll, `Friction.cage_entrainment_speed`",
+        "speed that replaces rolling where surfaces do not roll, `Friction.cage_entrainment_speed`",
     ),
     "film_parameter": ("1", "Lambda: film thickness over composite rms roughness"),
     "exponent": ("1", "C of the share of asperities, `Friction.asperity_exponent`"),

@@ -232,7 +232,7 @@ def _angle(e: float | None, Y: float | None, angle: float | None) -> tuple[float
     elif Y is not None:
         chosen, band = math.degrees(math.atan(0.4 / Y)), bands["Y"]
     else:
-        raise InputError.of("e", None, "must be given, or Y, or contact_angle_deg: it tells the angle of the cup (1)")
+        raise InputError.of("e", None, "must be given, or Y, or contact_angle_deg: it gives the angle of the cup (1)")
     key, value = ("contact_angle_deg", angle) if angle is not None else ("e", e) if e is not None else ("Y", Y)
     if not 7.0 <= chosen <= 35.0:
         raise InputError.of(key, value, f"must give a contact angle from 7 to 35 deg, not {chosen:.3g} deg")

@@ -467,7 +467,7 @@ class Scene(TurningRings, Model):
         if self.bearing.radial_clearance > 0.0 and loads[time] < LEAST_ACROSS and max(loads.values()) > 0.0:
             when = "" if is_constant(self.radial_load) else f" at {time:g} s"
             allowed = (
-                f"must be >= {LEAST_ACROSS:g}{when}: with less, nothing says where in its clearance the ring stands; keep a "
+                f"must be >= {LEAST_ACROSS:g}{when}: with less, nothing says where in its clearance the ring is; keep a "
                 "small load, or let the ring move, ring = 'free' (N)"
             )
             raise InputError.of("radial_load", loads[time], allowed)
@@ -508,7 +508,7 @@ class Scene(TurningRings, Model):
         for name in ("misalignment_x", "misalignment_y", "moment_x", "moment_y"):
             quantity = getattr(self, name)
             if quantity is not None and any(values_of(quantity)):
-                limit = "must be 0 with effects.planar = true: tilts are frozen, but a tilted ring asks each to change"
+                limit = "must be 0 with effects.planar = true: tilts are frozen, but a tilted ring changes each of them"
                 raise InputError.of(name, quantity, limit)
         axial = self.axial_load if self.displacement is None else (self.displacement[2] or 0.0)
         if not is_constant(axial):

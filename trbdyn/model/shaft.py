@@ -44,7 +44,7 @@ def time_to_turn(revolutions: float, speed_rpm: float | History, start: float) -
     """
     if not isinstance(speed_rpm, History):
         if speed_rpm == 0.0:
-            raise InputError.of(("run", "revolutions"), revolutions, "the shaft stands still; give duration (s)")
+            raise InputError.of(("run", "revolutions"), revolutions, "the shaft is at rest; give duration (s)")
         return 60.0 * revolutions / abs(speed_rpm)
     return (_repeating if speed_rpm.repeats else _ending)(revolutions, speed_rpm, start)
 

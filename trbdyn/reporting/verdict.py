@@ -135,7 +135,7 @@ def _static(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     if safety is None or safety >= NORMAL_SAFETY:
         return None
     if safety >= 1.0:
-        return "care", "Static safety", f"C0/P0 is {safety:.3g}: ISO 76 asks for {NORMAL_SAFETY:g} in normal operation."
+        return "care", "Static safety", f"C0/P0 is {safety:.3g}: ISO 76 requires {NORMAL_SAFETY:g} in normal operation."
     return "bad", "Static safety", f"C0/P0 is {safety:.3g}: below 1 the raceways keep dents (ISO 76)."
 
 
@@ -450,7 +450,7 @@ def warnings(result: Result, numbers: dict[str, Any], estimated: int, assumed: i
     out = list(dict.fromkeys(str(note) for note in (*(result.meta.get("notes") or ()), *result.warnings)))
     if estimated:
         out.append(
-            f"{estimated} inputs are estimated from the catalogue's numbers, see the table of inputs; trb.sensitivity tells "
+            f"{estimated} inputs are estimated from the catalogue's numbers, see the table of inputs; trb.sensitivity shows "
             "which of them matter."
         )
     if assumed:

@@ -99,7 +99,7 @@ class AssemblyResult(Mapping[str, Result], Displayed):
         notes = (
             f"{self.message}; energy closure of the whole {self.energy.closure:.2g}; power loss of all bearings "
             f"{sum(one['power_loss'] or 0.0 for one in numbers.values()):.5g} W.",
-            f"The shaft's centre of mass stands at ({mean[0]:.4g}, {mean[1]:.4g}, {mean[2]:.4g}) um in the mean, and moves by up "
+            f"The shaft's centre of mass is at ({mean[0]:.4g}, {mean[1]:.4g}, {mean[2]:.4g}) um in the mean, and moves by up "
             f"to {np.hypot(*(shaft - mean)[:, :2].T).max():.3g} um about that across the axis.",
             *self.warnings,
         )

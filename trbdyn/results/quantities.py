@@ -200,12 +200,12 @@ QUANTITIES: Final[dict[str, Quantity]] = {
     "static_safety": Quantity(
         "static safety C0/P0 (ISO 76)",
         "",
-        "Static rating over static load: below 1 the raceways keep dents, normal operation asks for 1.5 (ISO 76).",
+        "Static rating over static load: below 1 the raceways keep dents, normal operation requires 1.5 (ISO 76).",
     ),
     "viscosity_ratio": Quantity(
         "viscosity ratio kappa (ISO 281)",
         "",
-        "Viscosity over the one that this bearing asks for at its speed: below 1 surfaces touch, 1 to 4 is good.",
+        "Viscosity over the one that this bearing needs at its speed: below 1 surfaces touch, 1 to 4 is good.",
     ),
     **_of_contacts(
         "film_parameter_{}",

@@ -243,7 +243,7 @@ class Watch:
         if not moved > RING_LOOSE * diameter:
             return None
         text = (
-            f"at {sim._core.time:.6g} s the free {ring} ring stands {1e3 * moved:.3g} mm from its place, more than a tenth of a "
+            f"at {sim._core.time:.6g} s the free {ring} ring is {1e3 * moved:.3g} mm from its place, more than a tenth of a "
             "roller's diameter: nothing holds it there"
         )
         if "ring" not in self._noted:
@@ -276,7 +276,7 @@ class Watch:
         """The same of a ring on a shaft with other bearings."""
         if self._bearing.seat is None or not self._moved > RING_GONE * self._bearing.scene.bearing.roller.diameter:
             return None
-        text = f"the ring stands {1e3 * self._moved:.3g} mm from its place: nothing holds the shaft there"
+        text = f"the ring is {1e3 * self._moved:.3g} mm from its place: nothing holds the shaft there"
         if "ring" not in self._noted:
             self._say(text, "ring")
         return f"ended: {self._bearing.said}{text}"

@@ -131,7 +131,7 @@ class Rating(Fitted):
         metadata=_number("static safety by the largest pressure of a roller", "(4 GPa/p)^2")
     )
     viscosity: float = field(metadata=_number("viscosity of the oil", "nu", "mm2/s"))
-    reference_viscosity: float | None = field(metadata=_number("viscosity that the bearing asks for", "nu1", "mm2/s"))
+    reference_viscosity: float | None = field(metadata=_number("viscosity that the bearing needs", "nu1", "mm2/s"))
     viscosity_ratio: float | None = field(metadata=_number("viscosity ratio", "kappa"))
     contamination_factor: float | None = field(metadata=_number("contamination factor", "e_C"))
     life_factor: float | None = field(metadata=_number("life modification factor", "a_ISO"))

@@ -176,7 +176,7 @@ class EquilibriumSolver:
         farthest = float(moved.max())
         if farthest > FAR_SHARE * self.scene.bearing.roller.diameter:
             said = (
-                f"a balance was found where the ring stands {1e3 * farthest:.3g} mm away, more than a tenth of a roller's "
+                f"a balance was found where the ring is {1e3 * farthest:.3g} mm away, more than a tenth of a roller's "
                 "diameter: nothing holds it there"
             )
             raise LoadError(_why_not(self.scene, time, said, 0.0))

@@ -116,7 +116,7 @@ def placed_again(model: _core.Model, scene: Scene, motion: RingMotion) -> str:
         if scene.ring == "held" and changes:
             return (
                 f"start.displacement is not given: the ring is held at the equilibrium at {start.time:g} s, while the run that "
-                "this state is from may hold it at that of another speed; Start.state(simulation.state) knows where it stood"
+                "this state is from may hold it at that of another speed; Start.state(simulation.state) has its place"
             )
         return ""
     arm = 0.5 * scene.bearing.pitch_diameter
@@ -130,7 +130,7 @@ def placed_again(model: _core.Model, scene: Scene, motion: RingMotion) -> str:
     if off <= (OTHER_SPEED if scene.ring == "held" and changes else SAME_PLACE):
         return ""
     what = (
-        "the ring is held there all the same; without start.displacement it stands in that equilibrium"
+        "the ring is held there all the same; without start.displacement it is in that equilibrium"
         if scene.ring == "held"
         else "the ring begins in that equilibrium, so that the forces on it jump"
     )

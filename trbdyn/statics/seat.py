@@ -239,7 +239,7 @@ def _check(seats: Sequence[Seat], body: RingBody, loads: Mapping[str, Load]) -> 
     for number, seat in enumerate(seats):
         start = seat.scene.start
         if start.kind == "state":
-            limit = "must not be 'state': the state of a bearing alone knows nothing of the shaft"
+            limit = "must not be 'state': the state of a bearing alone holds nothing of the shaft"
             raise InputError.of(("seats", number, "scene", "start", "kind"), "state", limit)
         for name, own, needed in (
             ("speed_rpm", seat.scene.speed_rpm, seat.of_shaft(first.scene.speed_rpm)),

@@ -38,7 +38,7 @@ class Points:
         self.loads = [_pair(one) for one in given["loads"]]
         self.temperatures = [number_of("temperatures", one) for one in given["temperatures"]]
         if not all(self.speeds):
-            raise InputError.of("speeds", speeds, "must not hold 0: a shaft that stands has no friction torque (rpm)")
+            raise InputError.of("speeds", speeds, "must not hold 0: a shaft at rest has no friction torque (rpm)")
         for field, values in given.items():
             if len(set(getattr(self, field))) != len(values):
                 raise InputError.of(field, values, "must not hold a value twice")

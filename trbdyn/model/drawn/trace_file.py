@@ -134,7 +134,7 @@ def _drawn(file: Path, unit: str | None, layer: str | None) -> tuple[Array, Arra
     told = _DRAWN_UNITS.get(document.units)
     if told is None and unit is None:
         raise InputError.of(
-            "position_unit", None, f"must be given, one of {', '.join(UNITS)}: {file.name} tells no unit"
+            "position_unit", None, f"must be given, one of {', '.join(UNITS)}: {file.name} names no unit"
         )
     if told is not None and unit is not None and told != unit:
         raise InputError.of("position_unit", unit, f"must be the unit of {file.name}, {told}, or left out")

@@ -327,7 +327,7 @@ class Lubricant(Model):
         elif self._moved_without_viscosity(new):
             limit = (
                 f"must come with viscosity, pressure_coefficient and temperature_coefficient: those given belong to "
-                f"{self.temperature_c:g} C; or give an oil, which knows them at every temperature (C)"
+                f"{self.temperature_c:g} C; or give an oil, which has them at every temperature (C)"
             )
             raise InputError.of("temperature_c", new["temperature_c"], limit)
         return type(self)(**{**own, **new})

@@ -80,7 +80,7 @@ def run_ground(subject: Subject, want: Mapping[str, float], period: float, lengt
     notes += [f"the motion is not known to have settled after {end - began:.3g} s: {settling.reason}"] * (
         not settling.settled
     )
-    notes += [f"in the run that it stands on: {text}" for text in records.warnings]
+    notes += [f"in the run that it is based on: {text}" for text in records.warnings]
     turns = (end - began) / period
     if turns < LEAST_TURNS:
         notes.append(f"only {turns:.2g} turns of the {subject.turning_ring} could be looked at; allow more effort")
