@@ -375,7 +375,7 @@ class TestRunOptions:
     def test_refuses(self) -> None:
         with pytest.raises(InputError, match=r"run\.duration"):
             RunOptions(revolutions=1, duration=1)
-        with pytest.raises(InputError, match="stands still"):
+        with pytest.raises(InputError, match="is at rest"):
             RunOptions(revolutions=1).end_time(turning(0.0))
         with pytest.raises(InputError, match=r"run\.revolutions = None"):
             RunOptions().end_time(turning(60.0))
