@@ -197,50 +197,44 @@ def sensitivity(
             moved += _cases(begun, prefix, bearing, options, f"{prefix}{entry.path} {end:.6g}")
     # in a folder the runs of the estimate are done, and stand in its dataset beside the others
     kept = same if how.get("folder") is not None else []
-    found = _values(ran([*kept, *moved]).isel(case=slice(len(kept), None)), key, starts)
-    ends = [(low, high) for (low, _), (high, _) in zip(found[::2], found[1::2], strict=True)]
-    notes = [
-        "; ".join(f"{end:.4g}: {why}" for end, (_, why) in zip((entry.low, entry.high), both, strict=True) if why)
-        for (_, entry), both in zip(chosen, zip(found[::2], found[1::2], strict=True), strict=True)
-    ]
-    limits = told_from(base, ends)
-    influences = [
-        _influence(_named(prefix, entry), float(base.mean()), *of_entry, note)
-        for (prefix, entry), note, of_entry in zip(chosen, notes, zip(ends, limits, strict=True), strict=True)
-    ]
+    found, why = _values(ran([*kept, *moved]).isel(case=slice(len(kept), None)), key, starts)
+    value, ends = float(base.mean()), found.reshape(len(chosen), 2, starts)
+    limits, means = told_from(base, ends), ends.mean(axis=-1)
+    apart = np.nan_to_num(np.abs(means - value))
+    influences = []
+    for k, (prefix, entry) in enumerate(chosen):
+        band = (entry.low, entry.high)
+        at = [
+            value if end == entry.value else None if np.isnan(mean) else float(mean)
+            for end, mean in zip(band, means[k], strict=True)
+        ]
+        note = "; ".join(f"{end:.4g}: {said}" for end, said in zip(band, why[2 * k : 2 * k + 2], strict=True) if said)
+        told = bool((apart[k] > limits[k]).any())
+        influences.append(Influence(_named(prefix, entry), at[0], at[1], float(apart[k].max()), told, note))
     influences.sort(key=lambda entry: -entry.span)
-    known = [limit for pair in limits for limit in pair if limit is not None]
-    return Sensitivity(name, float(base.mean()), float(np.median(known)) if known else 0.0, tuple(influences))
+    known = limits[np.isfinite(limits)]
+    return Sensitivity(name, value, float(np.median(known)) if known.size else 0.0, tuple(influences))
 
 
-Pair = tuple[Array | None, Array | None]
-
-
-def told_from(base: Array, ends: Sequence[Pair]) -> list[tuple[float | None, float | None]]:
-    """Difference of the mean over the starts from which each end of a band is told apart from the estimate.
+def told_from(base: Array, ends: Array) -> Array:
+    """Difference of the mean over the starts from which each end of a band is told apart from the estimate, shape (n, 2).
 
     `base` has the result with the estimates in R repeated runs from each of S starts, shape (R, S); `ends` the result at both
-    ends of each band from the same starts, shape (S,), or None where there is none.
+    ends of each band from the same starts, shape (n, 2, S), nan where there is none.
     """
     from scipy import stats
 
     repeats, starts = base.shape
     mean = base.mean(axis=0)
     of_chance = float(base.var(axis=0, ddof=1).mean()) * (1.0 + 1.0 / repeats)
-    own = [[None if end is None else float((end - mean).var(ddof=1)) for end in pair] for pair in ends]
-    known = [value for pair in own for value in pair if value is not None]
-    if not known:
-        return [(None, None)] * len(ends)
+    own = (ends - mean).var(axis=-1, ddof=1)
+    known = own[np.isfinite(own)]
+    if not known.size:
+        return np.asarray(own)
     usual = float(np.median(known)) / (float(stats.chi2.median(starts - 1)) / (starts - 1))
-    factor = float(stats.t.ppf(1.0 - 0.5 * CHANCE / len(known), starts * (repeats - 1)))
+    factor = float(stats.t.ppf(1.0 - 0.5 * CHANCE / known.size, starts * (repeats - 1)))
     least = LEAST_SHARE * abs(float(mean.mean()))
-
-    def limit(variance: float | None) -> float | None:
-        if variance is None:
-            return None
-        return max(factor * float(np.sqrt(max(variance, usual, of_chance) / starts)), least)
-
-    return [(limit(low), limit(high)) for low, high in own]
+    return np.maximum(factor * np.sqrt(np.maximum(own, max(usual, of_chance)) / starts), least)
 
 
 def _named(prefix: str, entry: Estimated) -> Estimated:
@@ -296,16 +290,17 @@ def _base(data: xarray.Dataset, key: str, name: str) -> Array:
     raise InputError.of("quantity", name, limit)
 
 
-def _values(data: xarray.Dataset, key: str, starts: int) -> list[tuple[Array | None, str]]:
-    """The result from all starts at each end of a band, or why there is none."""
-    found: list[tuple[Array | None, str]] = []
-    for k in range(0, data.sizes["case"], starts):
-        rows = data.isel(case=slice(k, k + starts))
+def _values(data: xarray.Dataset, key: str, starts: int) -> tuple[Array, list[str]]:
+    """The result from all starts at each end of a band, shape (ends, starts), nan where there is none, and why."""
+    found, why = np.full((data.sizes["case"] // starts, starts), np.nan), []
+    for k, values in enumerate(found):
+        rows = data.isel(case=slice(k * starts, (k + 1) * starts))
         failed = [str(m) for s, m in zip(rows["status"].values, rows["message"].values, strict=True) if s != "done"]
-        values = np.asarray(rows[key].values, dtype=float) if key in rows and not failed else np.full(starts, np.nan)
-        good = bool(np.isfinite(values).all())
-        found.append((values, "") if good else (None, _reason(failed[0]) if failed else "the result is no number"))
-    return found
+        given = np.asarray(rows[key].values, dtype=float) if key in rows and not failed else values
+        good = bool(np.isfinite(given).all())
+        values[:] = given if good else np.nan
+        why.append("" if good else _reason(failed[0]) if failed else "the result is no number")
+    return found, why
 
 
 def _begun(subject: Subject, number: int) -> Subject:
@@ -323,16 +318,6 @@ def _start(start: Start, number: int) -> Start:
     if start.kind == "unequal":
         return start.replace(seed=start.seed + number)
     return Start.unequal(number, spread=0.3)
-
-
-def _influence(
-    entry: Estimated, value: float, ends: Pair, limits: tuple[float | None, float | None], note: str
-) -> Influence:
-    means = [None if end is None else float(end.mean()) for end in ends]
-    apart = [0.0 if mean is None else abs(mean - value) for mean in means]
-    told = any(limit is not None and size > limit for size, limit in zip(apart, limits, strict=True))
-    at = [value if target == entry.value else mean for target, mean in zip((entry.low, entry.high), means, strict=True)]
-    return Influence(entry, at[0], at[1], max(apart), told, note)
 
 
 def _reason(text: str) -> str:
