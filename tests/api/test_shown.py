@@ -151,13 +151,6 @@ def test_a_sentence_among_values_wraps_and_a_number_does_not() -> None:
         assert ("nowrap" not in style) == wraps, text
 
 
-@pytest.mark.parametrize("name", ["errors", "laws", "animation", "observables", "plot"])
-def test_completion_in_modules_shows_what_users_need(name: str) -> None:
-    module = getattr(trb, name)
-    assert not {"Any", "TYPE_CHECKING", "annotations", "np", "plt", "dataclass"} & set(dir(module))
-    assert all(hasattr(module, found) for found in dir(module))
-
-
 PYDANTIC = (
     "model_dump",
     "model_fields",
