@@ -14,6 +14,9 @@ from chance import like, mean_difference
 from judge import MOST_STEPS, bounded_run, by_chance, judge, scene_duration
 from random_scenes import KINDS, ORDINARY, draw, make
 
+import trbdyn as trb
+from trbdyn.run import vibrations
+
 HERE = Path(__file__).resolve().parent
 
 FINE = ("right", "warned", "chance", "stopped", "refused", "unjudged")
@@ -68,8 +71,6 @@ def test_found_failures_stay_mended(path):
 @pytest.mark.parametrize(("kind", "seed"), [("cylindrical", 97000007), ("usual", 97000013)])
 def test_a_difference_by_chance_gives_no_warning(kind, seed):
     """A piece of 20 ms shows a difference in these right runs, a longer one shows that there is none."""
-    import trbdyn as trb
-
     table = ORDINARY | draw(kind, seed)
     scene = make(table)
     run = bounded_run(trb.Simulation(scene, accuracy=table["accuracy"]), scene_duration(scene), MOST_STEPS)
@@ -80,8 +81,6 @@ def test_what_steps_take_after_a_drop_of_load_is_measured_from_the_drop_on():
     """A wheel hub without damping, whose load falls to a tenth at 5.4 ms and comes back at 12.5 ms, loses a fifth too little
     between them; a piece that begins later, and ends under the full load, shows nothing.
     """
-    import trbdyn as trb
-
     scene = make(draw("hub", 98000011))
     drop, back = scene.axial_load.times[0], scene.axial_load.times[2]
     run = bounded_run(trb.Simulation(scene), scene_duration(scene), MOST_STEPS)
@@ -97,9 +96,6 @@ def test_an_interval_that_leaves_much_open_is_no_proof(unclear, monkeypatch):
     """The pieces that are repeated show next to no difference by chance, within 24 and 13 %; the loss is a tenth too low. So also
     by the rule of vibrations that neither grow nor are most of the loads.
     """
-    import trbdyn as trb
-    from trbdyn.run import vibrations
-
     if not unclear:
         monkeypatch.setattr(vibrations, "MOST", np.inf)
         monkeypatch.setattr(vibrations, "GROWING", np.inf)
@@ -112,8 +108,6 @@ def test_an_interval_that_leaves_much_open_is_no_proof(unclear, monkeypatch):
 
 def test_the_judge_sees_a_run_that_is_wrong():
     """Tolerances that are far too large: energy is made and losses are off, and the judge's measures show it."""
-    import trbdyn as trb
-
     scene = make(draw("usual", 3) | {"speed_rpm": 200.0, "start": "equal"})
     good = bounded_run(trb.Simulation(scene, accuracy="reference"), 0.02, 20_000)
     loose = {
