@@ -17,6 +17,7 @@
 #   make wheels     a source distribution and a wheel in dist/, audited and tried in an empty environment
 #   make mutate     small faults put into a copy of the sources: how many do the tests notice? (COUNT=250 MINUTES=90 SEED=1)
 #   make count      how many lines the sources have, by folder
+#   make walk       which files of csrc a right-hand side passes through, with the functions of each (gcc and gcov)
 #   make install    only the environment and the package
 #   make clean      remove what was built; make distclean: .venv too
 #
@@ -47,7 +48,7 @@ DEFINES := -C cmake.define.TRB_WERROR=$(WERROR) -C cmake.define.TRB_BUILD_TESTS=
 
 export MPLBACKEND := Agg
 
-.PHONY: count cross demo site docs figures wheels test lint format bench stability notebooks fuzz sanitize mutate adversary install clean distclean
+.PHONY: count walk cross demo site docs figures wheels test lint format bench stability notebooks fuzz sanitize mutate adversary install clean distclean
 .NOTPARALLEL:
 
 demo: install
@@ -116,6 +117,9 @@ mutate: install $(VENV)/.test
 
 count:
 	@$(PYTHON) .ci/count.py
+
+walk: install
+	@$(PY) .ci/walk.py
 
 install: build/.package
 

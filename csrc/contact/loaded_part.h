@@ -1,13 +1,6 @@
-/* The loaded part of a contact line (docs/theory/contacts.md#ends-of-the-loaded-part).
- *
- * A crowned roller carries along a part of its line only, and rolling resistance hardly falls towards the ends of this part: a sum over
- * whole nodes would jump by a weight whenever an end passes a node, and be wrong by some per cent. Every node stands for a cell of the line,
- * as long as its weight. Between a node that carries and one that does not, the end of the loaded part is where the interference is that at which rolling
- * resistance sets in (the parabola through these two and the next inner node); the cell in which it lies rolls with its loaded part only, at the interference
- * that is found there. So the sum follows the ends without a jump. Normal loads need none of this, as they vanish at the ends; they stay
- * the sum over nodes, the gradient of an energy.
- *
- * Included by the kernel files only. */
+/* The loaded part of a contact line (docs/theory/contacts.md#ends-of-the-loaded-part). Rolling resistance hardly falls towards the ends of the part
+ * that carries, so a sum over whole nodes would jump whenever an end passes a node. Every node stands for a cell of the line; the cell in which an
+ * end lies rolls with its loaded part only, at the interference that is found there. Included by the kernel files only. */
 #ifndef TRB_CONTACT_LOADED_PART_H
 #define TRB_CONTACT_LOADED_PART_H
 

@@ -107,10 +107,8 @@ const trb_pair_kind trb_pair_rib = {.name = "spherical end on a conical rib",
                                     .depth = depth_of,
                                     .look = look_at};
 
-/* Small end on the plane front rib of the inner ring of a tapered bearing (docs/theory/contacts.md#small-end-on-the-front-rib). Two nearly parallel
- * faces have no unique deepest point. The rib's face is bounded by two circles about the ring's axis; each meets the roller's end plane in one
- * point, the deepest of that circle, which moves smoothly with the pose. The circles carry half the stiffness each. The force is along the
- * roller's axis, the gradient of an energy. */
+/* Small end on the plane front rib of the inner ring of a tapered bearing (docs/theory/contacts.md#small-end-on-the-front-rib). Each of the two
+ * circles that bound the rib's face meets the roller's end plane in its deepest point, with half of the stiffness, along the roller's axis. */
 static void edge_on_end(const trb_model *m, const trb_roller_pose *r, const trb_ring_pose *ring, int edge, const trb_pair *pair, int row,
                         trb_counters *counters, trb_loads *to, trb_contact *c)
 {

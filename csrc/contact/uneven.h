@@ -1,13 +1,7 @@
-/* What surfaces off their true form do to a contact of a roller with a raceway
- * (docs/theory/contacts.md#surfaces-off-their-true-form).
- *
- * The interference of a node is less by the depth h there, so that the elastic energy of the contact depends on the angles psi from which the
- * depths are read: that of the roller on the race, and that of the contact on the roller. What follows from the energy alone is right
- * whatever the shape of the surface: a normal load q is accompanied by the generalised force q dh/dpsi. On a race psi is the angle about
- * the ring's axis of the point of the roller's axis from which the node's contact is seen, so the force is q (dh/dpsi)/rho there, across
- * the plane of ring axis and point, with rho the distance from the ring's axis, and its opposite acts on the ring at the same point. On a
- * roller psi is minus the angle that it has turned by in its orbiting frame, and the force is q (dh/dpsi) a_z/r along the tangential
- * direction, at the point where the normal meets the bearing's axis: it turns the roller, and no ring about its axis. */
+/* What surfaces off their true form do to a contact of a roller with a raceway (docs/theory/contacts.md#surfaces-off-their-true-form). The
+ * interference of a node is less by the depth h there, so the elastic energy depends on the angles psi from which depths are read, and a normal
+ * load q is accompanied by the generalised force q dh/dpsi: on a race across the plane of ring axis and point, with its opposite on the ring at
+ * the same point; on a roller along the tangential direction where the normal meets the bearing's axis, so that it turns the roller alone. */
 #ifndef TRB_CONTACT_UNEVEN_H
 #define TRB_CONTACT_UNEVEN_H
 

@@ -1,12 +1,7 @@
-/* The Jacobian as a matrix in the shape of an arrow, and systems with it (docs/theory/numerics.md#arrow-shaped-system).
- *
- * Rollers do not act on each other but on the other bodies alone: the cage, and whatever else is not a rolling element. These bodies
- * together are the hub. If the rollers come first in the state and the hub last, the system matrix I - gamma J therefore has a small block
- * A_j on the diagonal for each roller j, a border B_j in the columns of the hub, a border C_j in its rows, and the hub's block D; all else
- * is zero. Such a system is solved by eliminating the rollers: the Schur complement S = D - sum C_j A_j^-1 B_j gives the hub's part of the
- * solution, and that gives the part of each roller. The effort is proportional to the number of rollers. A roller's borders have only the
- * parts of the hub on whose bodies it acts. One factorisation is used for many solutions and the blocks are small, so their inverses are computed and
- * stored. */
+/* The Jacobian as a matrix in the shape of an arrow, and systems with it (docs/theory/numerics.md#arrow-shaped-system). Rollers act on the hub, all
+ * bodies that are no rolling elements, and not on each other: I - gamma J has a small block for each roller, borders in the columns and rows of the
+ * hub, and the hub's block. Rollers are eliminated first. A roller's borders have only the parts of the hub on whose bodies it acts. One
+ * factorisation is used for many solutions, so the inverses of blocks are stored. */
 #ifndef TRB_STEPPING_ARROW_H
 #define TRB_STEPPING_ARROW_H
 

@@ -12,7 +12,12 @@
 
 enum { ACCUMULATORS = 16 };
 
-static inline double larger(double a, double b) { return a > b ? a : b; }
+static inline void swap(double *a, double *b)
+{
+  const double keep = *a;
+  *a = *b;
+  *b = keep;
+}
 
 /* Masks of 0 and 1 by which whole rows are changed with the same arithmetic for each entry. Writing single entries instead and reading
  * the whole row right after would cause a store-forwarding stall. */
@@ -41,12 +46,12 @@ static inline double take_two(double (*restrict a)[TRB_NP], int n, int c)
   for (int k = 0; k < TRB_NP; k++) row[k] = (1.0 - unit[d][k]) * row[k] - beside * row2[k];
   for (int i = 0; i < n; i++) {
     const double m = a[i][c], m2 = a[i][d];
-    if (i > d) most = larger(most, fabs(m)), most2 = larger(most2, fabs(m2 - m * beside));
+    if (i > d) most = trb_max(most, fabs(m)), most2 = trb_max(most2, fabs(m2 - m * beside));
     for (int k = 0; k < TRB_NP; k++) a[i][k] = keep[k] * a[i][k] - m * row[k] - m2 * row2[k];
   }
   for (int k = 0; k < TRB_NP; k++) a[c][k] = row[k];
   for (int k = 0; k < TRB_NP; k++) a[d][k] = row2[k];
-  return larger(most * fabs(per), most2 * fabs(per2));
+  return trb_max(most * fabs(per), most2 * fabs(per2));
 }
 
 static inline void take(double (*restrict a)[TRB_NP], int n, int c)
@@ -78,7 +83,7 @@ static inline int invert_as_is(double (*restrict a)[TRB_NP], int n)
 {
   double most = 0.0;
   int    c = 0;
-  for (; c + 1 < n; c += 2) most = larger(take_two(a, n, c), most);
+  for (; c + 1 < n; c += 2) most = trb_max(take_two(a, n, c), most);
   if (c < n) take(a, n, c);
   return most * DIAGONAL_SHARE <= 1.0 && all_finite(&a[0][0], n * TRB_NP);
 }
@@ -88,8 +93,8 @@ static inline double largest_from(const double *row, int c)
 {
   double size[TRB_NP], most[4];
   for (int k = 0; k < TRB_NP; k++) size[k] = (1.0 - before[c][k]) * fabs(row[k]);
-  for (int k = 0; k < 4; k++) most[k] = larger(larger(size[k], size[k + 4]), size[k + 8]);
-  return larger(larger(most[0], most[1]), larger(most[2], most[3]));
+  for (int k = 0; k < 4; k++) most[k] = trb_max(trb_max(size[k], size[k + 4]), size[k + 8]);
+  return trb_max(trb_max(most[0], most[1]), trb_max(most[2], most[3]));
 }
 
 /* Column of the pivot of row c, or -1. */
@@ -111,11 +116,7 @@ static int invert_with_exchanges(double (*restrict a)[TRB_NP], int n)
     const int best = pivot_of(a[c], n, c);
     if (best < 0) return 0;
     pivot[c] = best;
-    for (int i = 0; best != c && i < n; i++) {
-      const double keep = a[i][c];
-      a[i][c] = a[i][best];
-      a[i][best] = keep;
-    }
+    for (int i = 0; best != c && i < n; i++) swap(&a[i][c], &a[i][best]);
     take(a, n, c);
   }
   /* columns that were exchanged are rows of the inverse: put them back in reverse order */
@@ -263,11 +264,7 @@ static int invert_wide(int n, int room, double *restrict a, double *restrict row
     if (fabs(at[c]) >= DIAGONAL_SHARE * fabs(at[best])) best = c;
     if (!(fabs(at[best]) > 0.0)) return 0;
     pivot[c] = best;
-    for (int i = 0; best != c && i < n; i++) {
-      const double keep = a[i * room + c];
-      a[i * room + c] = a[i * room + best];
-      a[i * room + best] = keep;
-    }
+    for (int i = 0; best != c && i < n; i++) swap(&a[i * room + c], &a[i * room + best]);
     const double per = 1.0 / at[c];
     for (int k = 0; k < room; k++) row[k] = per * at[k];
     row[c] = per;
@@ -285,14 +282,8 @@ static int invert_wide(int n, int room, double *restrict a, double *restrict row
     }
     memcpy(at, row, (size_t)room * sizeof *at);
   }
-  for (int c = n - 1; c >= 0; c--) {
-    double *const at = a + c * room, *const other = a + pivot[c] * room;
-    for (int k = 0; pivot[c] != c && k < room; k++) {
-      const double keep = at[k];
-      at[k] = other[k];
-      other[k] = keep;
-    }
-  }
+  for (int c = n - 1; c >= 0; c--)
+    for (int k = 0; pivot[c] != c && k < room; k++) swap(&a[c * room + k], &a[pivot[c] * room + k]);
   return all_finite(a, n * room);
 }
 
@@ -380,7 +371,7 @@ static void follow(const double *restrict value, const double (*restrict slope)[
   for (int i = 0; i < TRB_TANGENT_OUT; i++) sum[i] = value[i] + bend * curve[i];
   for (int c = 0; c < TRB_TANGENT_IN; c++)
     for (int i = 0; i < TRB_TANGENT_OUT; i++) sum[i] += step[c] * slope[c][i];
-  for (int i = 0; i < TRB_TANGENT_OUT; i++) sum[i] = larger(sum[i], least[i]);
+  for (int i = 0; i < TRB_TANGENT_OUT; i++) sum[i] = trb_max(sum[i], least[i]);
   memcpy(flow, sum, sizeof sum);
 }
 
@@ -407,7 +398,7 @@ static void follow_ring(const trb_ring_slopes *restrict slopes, const double *re
   for (int c = 0; c < TRB_RING_IN; c++) add_eight(slopes->reaction[TRB_TANGENT_IN + c], of_ring[c], c % 2 == 0 ? &even : &odd);
   even += odd;
   memcpy(changed, sum, sizeof changed);
-  for (int i = 0; i < TRB_TANGENT_OUT; i++) flow[i] = larger(changed[i], least[i]);
+  for (int i = 0; i < TRB_TANGENT_OUT; i++) flow[i] = trb_max(changed[i], least[i]);
   memcpy(reaction, &even, sizeof even);
 }
 

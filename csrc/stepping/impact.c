@@ -1,9 +1,6 @@
-/* An impact is followed well if the errors of a step are small beside the speed at which the bodies meet and beside the interference
- * that follows from it, and not beside numbers that are the same for all impacts (docs/theory/numerics.md#impacts). So while a roller
- * may meet its pocket within the next steps, or touches it, the tolerances of both bodies are multiplied by a factor: a share of
- * that speed over the absolute tolerance of velocities, or of that interference over the absolute tolerance of positions, whichever is
- * less, between a least factor and 1. The speed is the largest since they met, as it passes through zero during contact. The same holds
- * for pairs without a roller. */
+/* While a roller may meet its pocket within the next steps, or touches it, the tolerances of both bodies are multiplied by a share of the speed at
+ * which they met over the absolute tolerance of velocities, or of the interference that follows from it over that of positions, whichever is less,
+ * between a least factor and 1 (docs/theory/numerics.md#impacts). The same holds for pairs without a roller. */
 #include "stepping/impact.h"
 
 #include <math.h>

@@ -1,10 +1,7 @@
-/* Steps as long as each body allows (docs/theory/multirate.md). The equations of a roller that touches nothing with coordinates contain its own
- * coordinates and the prescribed motion alone: it steps by itself. The hub and the rollers that touch it, or may soon do so, step together.
- *
- * A step of the hub goes so: rollers by themselves step until they are no earlier than its end; the hub's team steps; then every roller by itself is
- * proven to have touched nothing in the whole of that step, by the bounds of its gaps and by how far both bodies have moved. Where the proof fails, the
- * step is taken back, the roller goes back along its own course to where the step began, and is one of the team. A roller of the team that was clear for
- * some steps leaves it. Time and state of the integrator are those at the end of the hub's step, to which the courses of the others are read. */
+/* Steps as long as each body allows (docs/theory/multirate.md). A roller that touches nothing with coordinates steps by itself; the hub and the
+ * rollers that touch it, or may soon do so, step together. Rollers by themselves step until they are no earlier than the end of the hub's step; the
+ * hub's team steps; then every roller by itself is proven to have touched nothing in the whole of that step. Where the proof fails, the step is taken
+ * back, and the roller is one of the team from where it began. Time and state of the integrator are those at the end of the hub's step. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -121,22 +121,13 @@ static void hand_over(trb_recorder *r)
   if (r->idle && filled(r) >= ENOUGH) wake(r, &r->idle, &r->has_work);
 }
 
-void trb_recorder_step(trb_recorder *r, double time, const double *y)
-{
-  place *next = reserve(r);
-  next->row = NULL;
-  next->time = time;
-  memcpy(next->y, y, r->n_state * sizeof *y);
-  hand_over(r);
-}
-
-void trb_recorder_record(trb_recorder *r, double time, const double *y, double *row)
+void trb_recorder_put(trb_recorder *r, double time, const double *y, double *row)
 {
   place *next = reserve(r);
   next->row = row;
   next->time = time;
   memcpy(next->y, y, r->n_state * sizeof *y);
-  for (int k = 0; k < r->n; k++) {
+  for (int k = 0; row != NULL && k < r->n; k++) {
     const trb_dynamics *stepping = r->parts[k].stepping;
     trb_fast_apart(stepping, y, next->apart + stepping->system->layout.leaf);
   }

@@ -1,10 +1,6 @@
-/* Records and peaks of a run, computed beside the stepping by a second thread.
- *
- * A record needs an exact evaluation of every contact, and peaks look at all loads at the end of every step; together they cost more
- * than half as much as the steps themselves. Both follow from the states that the integrator has reached, and change nothing in it. So the
- * stepping puts each state that they need into a queue, in their order, and goes on; the second thread takes the states from the queue
- * and computes. What it computes is the same to the bit as without it. The thread lives within one call of `trb_simulation_run`: when
- * the call returns, the queue is empty and the thread has ended. It never calls Python, and takes no signals. */
+/* Records and peaks of a run, computed by a second thread beside the stepping: they follow from the states that the integrator has reached, change
+ * nothing in it, and cost together more than half as much as the steps. What is computed is the same to the bit as without it. The thread lives
+ * within one call of `trb_simulation_run`, never calls Python, and takes no signals. */
 #ifndef TRB_STEPPING_RECORDER_H
 #define TRB_STEPPING_RECORDER_H
 
@@ -29,10 +25,8 @@ void trb_record_parts_fill(const trb_record_parts *parts, const unsigned *apart,
 /* Starts the thread. parts: of n bearings; nothing else may use what they hold until the recorder is closed, but for the dynamics of the
  * stepping. NULL where there is no memory or no thread to be had: the caller then computes by itself. */
 trb_recorder *trb_recorder_open(const trb_record_parts *parts, int n, int n_state);
-/* The end of a step, for peaks. */
-void trb_recorder_step(trb_recorder *r, double time, const double *y);
-/* Records at a state; row: where they go, bearing by bearing. */
-void trb_recorder_record(trb_recorder *r, double time, const double *y, double *row);
+/* Records at a state; row: where they go, bearing by bearing; NULL: the end of a step, for peaks. */
+void trb_recorder_put(trb_recorder *r, double time, const double *y, double *row);
 /* Waits until everything is computed, and ends the thread. */
 void trb_recorder_close(trb_recorder *r);
 

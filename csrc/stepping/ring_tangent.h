@@ -1,8 +1,6 @@
-/* The part of a roller's tangent (stepping/tangent.h) that belongs to a ring with coordinates. What a roller and a ring do to each other
- * depends on where both are and how they move. The ring's place and motion in the frame R are eleven numbers, the inputs of the ring, which
- * are the same for all rollers; they stand beside the roller's own coordinates in the tangent. Besides the roller's flow the tangent then
- * gives the reaction: the wrench on the ring about its centre, in R. As R turns, a ring which stands still off the bearing's axis moves in
- * it, as the rollers see it. */
+/* The part of a roller's tangent (stepping/tangent.h) that belongs to a ring with coordinates. Its inputs are the ring's place and motion in the
+ * frame R, eleven numbers, the same for all rollers, beside the roller's own coordinates; besides the flow it gives the reaction, the wrench on the
+ * ring about its centre in R. As R turns, a ring which stands still off the bearing's axis moves in it. */
 #ifndef TRB_STEPPING_RING_TANGENT_H
 #define TRB_STEPPING_RING_TANGENT_H
 

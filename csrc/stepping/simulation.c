@@ -230,7 +230,7 @@ trb_status trb_simulation_step(trb_simulation *s, trb_message *message)
     s->previous = from;
     hold(s, it->time, it->y);
     if (!s->with_peaks) return TRB_OK;
-    if (s->recorder != NULL) trb_recorder_step(s->recorder, it->time, it->y);
+    if (s->recorder != NULL) trb_recorder_put(s->recorder, it->time, it->y, NULL);
     for (int k = 0; k < s->assembly.n && s->recorder == NULL; k++) trb_peaks_step(s->parts[k].peaks, it->time, it->y);
     return TRB_OK;
   }
@@ -335,7 +335,7 @@ static trb_status output(trb_simulation *s, double time, double *record, trb_mes
     y = s->between;
   }
   if (s->recorder != NULL) {
-    trb_recorder_record(s->recorder, time, y, record);
+    trb_recorder_put(s->recorder, time, y, record);
     return TRB_OK;
   }
   for (int k = 0; k < s->assembly.n; k++) {

@@ -1,9 +1,6 @@
 /* A circle about the axis of its body, such as the edge of a rib, and a plane, such as the end of a roller
- * (docs/theory/contacts.md#small-end-on-the-front-rib).
- *
- * Points of the circle are c + r e with e at right angles to its axis k. Their depth beyond a plane through E with the normal a,
- * (c + r e - E).a, is largest where e points along a_perp = a - (a.k) k, the part of a across the axis: (c - E).a + r |a_perp|. The
- * deepest point moves smoothly with the pose as long as the plane leans against the circle, so that a_perp is not zero. */
+ * (docs/theory/contacts.md#small-end-on-the-front-rib). The depth of c + r e beyond a plane through E with the normal a is largest where e points
+ * along the part of a across the axis, a_perp: (c - E).a + r |a_perp|. The deepest point moves smoothly as long as a_perp is not zero. */
 #ifndef TRB_SURFACE_CIRCLE_H
 #define TRB_SURFACE_CIRCLE_H
 

@@ -1,22 +1,11 @@
-/* A cone about the axis of its body: raceways, the flank of a roller, the face of a rib. A cylinder is the one with the half angle zero.
+/* A cone about the axis of its body: raceways, the flank of a roller, the face of a rib; a cylinder is the one with the half angle zero. It is
+ * given by its radius R at a reference plane, and not by its apex, which a cylinder has not: e = R + z tan(alpha) with z along the axis from
+ * that plane and e the distance from the axis. A point is (e - R) cos(alpha) - z sin(alpha) beyond the surface, whose gradient is the normal
+ * cos(alpha) e^ - sin(alpha) k^, k^ the axis. Nothing is divided by a sine.
  *
- * The cone is given by its radius R at a reference plane, and not by its apex, which for a cylinder does not exist. In the axial plane, with
- * z along the axis from the reference plane and e the distance from the axis, a cone of half angle alpha is the line
- *
- *   e = R + z tan(alpha),
- *
- * which passes through (R, 0) and has the normal (cos(alpha), -sin(alpha)), away from the axis. The distance of a point beyond the
- * surface is that of (e, z) from (R, 0) along the normal,
- *
- *   (e - R) cos(alpha) - z sin(alpha),
- *
- * and its gradient in space is the normal, cos(alpha) e^ - sin(alpha) k^ with e^ the direction from the axis to the point and k^ the axis.
- * With R = z0 tan(alpha), z0 the distance from the apex to the reference plane, this is the known e cos(alpha) - (z0 + z) sin(alpha). Nothing
- * is divided by a sine, so that all goes over into a cylinder as alpha goes to zero.
- *
- * A cone has two sides. It is kept by the direction of its normal out of the side where the bodies are, into the material: cosine and sine are
- * those of alpha where bodies are inside (outer raceway), both with the other sign where they are outside (inner raceway, flank). A rib whose
- * face has its normal at the angle beta to the axis has the cosine sin(beta) and the sine -cos(beta): alpha = beta - 90 degrees. */
+ * Of both sides the normal out of that where the bodies are, into the material, is kept: cosine and sine are those of alpha where bodies are
+ * inside (outer raceway), both with the other sign where they are outside (inner raceway, flank). A rib whose face has its normal at the angle
+ * beta to the axis has the cosine sin(beta) and the sine -cos(beta): alpha = beta - 90 degrees. */
 #ifndef TRB_SURFACE_CONE_H
 #define TRB_SURFACE_CONE_H
 

@@ -1,11 +1,7 @@
-/* An assembly: bearings that are simulated together with one integrator, each a system of its own with its rollers, its cage and its oil.
- *
- * Their state is one vector: the coordinates of all rollers, bearing after bearing, then those of the bodies of the hub, then spin angles,
- * then quadratures. Every system knows where its own entries lie (trb_layout), so that what evaluates a system reads and writes the vector
- * of the whole. Bearings on one shaft share a body, and so do those in one housing. The first system has it: it gives its rates without
- * loads, its energies and its work. In the other systems the ring is a part of shaft or housing: its coordinates follow from those of that
- * body and its place there, and the forces of its contacts act on it. The work that passes between them is booked in both, so that the
- * energy of each adds up by itself. One bearing is an assembly of one. */
+/* An assembly: bearings that are simulated together with one integrator, each a system of its own with its rollers, its cage and its oil. Their
+ * state is one vector: the rollers of all bearings, the bodies of the hub, spin angles, quadratures; every system knows where its own entries lie.
+ * Bearings on one shaft, or in one housing, share a body. The first system has it; in the others the ring is a part of it, and the forces of its
+ * contacts act on it. The work that passes between them is booked in both. One bearing is an assembly of one. */
 #ifndef TRB_SYSTEM_ASSEMBLY_H
 #define TRB_SYSTEM_ASSEMBLY_H
 

@@ -258,6 +258,12 @@ trb_simulation *rig_simulation(const trb_system *system, const trb_motion *motio
   return simulation;
 }
 
+void rig_run(trb_simulation *simulation, double until)
+{
+  trb_message message;
+  while (simulation->integrator.time < until) need(trb_simulation_step(simulation, &message), &message);
+}
+
 double rig_balance(const trb_system *system, const trb_motion *motion, double time, const double *y)
 {
   const double *q = y + trb_state_quadrature(system);

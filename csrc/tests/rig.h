@@ -40,6 +40,8 @@ trb_simulation *rig_simulation(const trb_system *system, const trb_motion *motio
 /* A simulation of one bearing; kind: name of an integrator; variant: of a kernel variant or "". */
 trb_status rig_create(const trb_system *system, const trb_motion *motion, const char *kind, const char *variant,
                       const trb_settings *settings, double time, const double *state, trb_simulation **simulation, trb_message *message);
+/* Steps until a time is reached; a step that fails ends the program. */
+void rig_run(trb_simulation *simulation, double until);
 /* Disturb a state: rollers about it, velocities at some slip, the cage against its rollers so that pockets touch. */
 void rig_disturb(const trb_system *system, unsigned long long *seed, double *state);
 
