@@ -264,6 +264,22 @@ void rig_run(trb_simulation *simulation, double until)
   while (simulation->integrator.time < until) need(trb_simulation_step(simulation, &message), &message);
 }
 
+rig_bench rig_open(const trb_params *params, double load)
+{
+  rig_bench b = {.system = rig_system(params)};
+  if (trb_state_size(b.system) > RIG_ROOM) exit(1);
+  b.motion = rig_motion(rig_state(b.system, load, 100 * TRB_PI, b.start), 100 * TRB_PI);
+  b.d = rig_dynamics(b.system, b.motion);
+  return b;
+}
+
+void rig_close(rig_bench *bench)
+{
+  trb_dynamics_free(bench->d);
+  trb_motion_free(bench->motion);
+  rig_free(bench->system);
+}
+
 double rig_balance(const trb_system *system, const trb_motion *motion, double time, const double *y)
 {
   const double *q = y + trb_state_quadrature(system);

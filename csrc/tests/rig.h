@@ -8,7 +8,7 @@
 #include "stepping/simulation.h"
 #include "system/tapered.h"
 
-enum { RIG_FACES = 4, RIG_SLICES = 24 };
+enum { RIG_FACES = 4, RIG_SLICES = 24, RIG_ROOM = 600 };
 
 /* 30310 with its oil at 60 C, effects of the paper, logarithmic profile, 24 uniform slices. */
 trb_params rig_params(void);
@@ -59,6 +59,18 @@ void rig_note(rig_tried *tried, double change, double bound);
 
 /* Back towards a state until no roller pushes the cage with more than a force. */
 void rig_draw_back(trb_dynamics *d, double most, const double *to, double *state);
+
+/* A bearing at 3000 rpm with its state at the start. */
+typedef struct rig_bench {
+  trb_system   *system;
+  trb_motion   *motion;
+  trb_dynamics *d;
+  double        start[RIG_ROOM];
+} rig_bench;
+
+/* Of a system of parameters under an axial load; rig_close frees all. */
+rig_bench rig_open(const trb_params *params, double load);
+void      rig_close(rig_bench *bench);
 
 /* Energy of all bodies and contacts at a state, less what was put in, plus what was lost, J. */
 double rig_balance(const trb_system *system, const trb_motion *motion, double time, const double *y);

@@ -10,35 +10,17 @@
 enum { MOST = 512 };
 
 static unsigned long long seed = 11;
+static trb_detail        *detail; /* of the bearing under test */
 
 /* Between `most` and so many decades less. */
 static double size_of(double most, double decades) { return most * pow(10.0, -decades * fabs(rig_random(&seed))); }
 
 /* A bearing whose motion is that of its frame; rings stand where the tests put them. */
-typedef struct bench {
-  trb_system   *system;
-  trb_motion   *motion;
-  trb_dynamics *d;
-  trb_detail   *detail;
-  double        y[MOST];
-} bench;
-
-static int set_up(bench *b, const trb_params *params, double load)
+static rig_bench set_up(const trb_params *params, double load)
 {
-  const double speed = 100.0 * TRB_PI;
-  b->system = rig_system(params);
-  b->motion = rig_motion(rig_state(b->system, load, speed, b->y), speed);
-  if (!CHECK(trb_dynamics_create(b->system, b->motion, "scalar", &b->d, NULL) == TRB_OK)) return 0;
-  for (int i = 0; i < b->system->n_bodies; i++) b->d->bodies[i].rests = 0;
-  return CHECK(trb_detail_create(b->system->model, b->system->pairs, b->system->n_pairs, &b->detail, NULL) == TRB_OK);
-}
-
-static void take_down(bench *b)
-{
-  trb_detail_free(b->detail);
-  trb_dynamics_free(b->d);
-  trb_motion_free(b->motion);
-  rig_free(b->system);
+  rig_bench b = rig_open(params, load);
+  for (int i = 0; i < b.system->n_bodies; i++) b.d->bodies[i].rests = 0;
+  return b;
 }
 
 /* A displacement of all rings, or of none. */
@@ -56,7 +38,7 @@ static void displace(double shift, double lean, stand *s)
 }
 
 /* Interferences of all rollers at a state, negative for a gap, by row; the frame has turned. */
-static void look(bench *b, double turn, const double *y, const stand *s, trb_loads *loads, double (*depth)[TRB_MOST_PAIRS])
+static void look(rig_bench *b, double turn, const double *y, const stand *s, trb_loads *loads, double (*depth)[TRB_MOST_PAIRS])
 {
   trb_dynamics    *d = b->d;
   const trb_model *m = d->model;
@@ -70,15 +52,15 @@ static void look(bench *b, double turn, const double *y, const stand *s, trb_loa
   }
   for (int j = 0; j < m->n_rollers; j++) trb_dynamics_pose_roller(d, j, y + trb_state_roller(b->system, j));
   const trb_instant at = trb_dynamics_instant(d, d->everyone, m->n_rollers);
-  trb_detail_clear(m, b->detail);
-  trb_dynamics_slow(d, &at, TRB_ANY_BODY, b->detail);
+  trb_detail_clear(m, detail);
+  trb_dynamics_slow(d, &at, TRB_ANY_BODY, detail);
   memcpy(loads, d->loads, (size_t)m->n_rollers * sizeof *loads);
   for (int i = 0; i < b->system->n_pairs; i++) {
     const trb_pair *pair = &b->system->pairs[i];
     for (int j = 0; j < m->n_rollers && pair->on && pair->kind->contact != TRB_CONTACT_NONE; j++) {
       const double margin = loads[j].margin[i];
-      if (pair->kind->contact == TRB_CONTACT_LINE) depth[j][i] = trb_pair_contacts(m, pair, b->detail)[j].load > 0.0 ? margin : -margin;
-      else depth[j][i] = trb_pair_contacts(m, pair, b->detail)[j].interference;
+      if (pair->kind->contact == TRB_CONTACT_LINE) depth[j][i] = trb_pair_contacts(m, pair, detail)[j].load > 0.0 ? margin : -margin;
+      else depth[j][i] = trb_pair_contacts(m, pair, detail)[j].interference;
       if (pair->kind->depth == NULL) continue;
       /* depths out of poses alone are those of the evaluation */
       const trb_ring_pose ring = trb_dynamics_ring_seen(d, pair->b, &d->rollers[j]);
@@ -101,7 +83,7 @@ static void move(const trb_system *system, int kind, double size, double *y, dou
 
 /* Random states of rollers and rings, and random displacements of both from there. aside, lean: of the rings; off: of the
  * rollers, m; farthest: displacement, m. */
-static void try_rings(bench *b, double aside, double lean, double off, double farthest, rig_tried *of, int *held)
+static void try_rings(rig_bench *b, double aside, double lean, double off, double farthest, rig_tried *of, int *held)
 {
   const trb_system   *system = b->system;
   const trb_model    *m = system->model;
@@ -113,7 +95,7 @@ static void try_rings(bench *b, double aside, double lean, double off, double fa
   for (int k = 0; k < 1500; k++) {
     double place[MOST], to[MOST], turn = rig_random(&seed), turned = turn;
     stand  from = {0}, there;
-    memcpy(place, b->y, sizeof place);
+    memcpy(place, b->start, sizeof place);
     displace(aside, lean, &from);
     double unused = 0.0;
     stand  none = {0};
@@ -166,10 +148,10 @@ static void try_rings(bench *b, double aside, double lean, double off, double fa
 
 static void test_rings(const trb_params *params, double load)
 {
-  bench     b;
   rig_tried of[TRB_MOST_PAIRS] = {{0}};
   int       held = 0;
-  if (!set_up(&b, params, load)) return;
+  rig_bench b = set_up(params, load);
+  detail = rig_detail(b.system);
   try_rings(&b, 0.0, 0.0, 2e-6, 1e-5, of, &held);
   try_rings(&b, 40e-6, 0.0, 2e-6, 1e-5, of, &held);
   try_rings(&b, 20e-6, 1e-3, 1e-5, 1e-4, of, &held);
@@ -184,7 +166,8 @@ static void test_rings(const trb_params *params, double load)
   }
   fprintf(stderr, "held %d\n", held);
   CHECK(held > 10000);
-  take_down(&b);
+  trb_detail_free(detail);
+  rig_close(&b);
 }
 
 /* Not a number proves nothing, wherever it stands. */

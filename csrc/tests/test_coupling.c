@@ -90,38 +90,33 @@ static void compare(const trb_system *system, int roller, double (*found)[ROWS],
 }
 
 /* most: force of a roller on the cage, N; shift: of the cage along the axis, which its ends take up, m. */
-static void check_scene(const trb_params *params, double most, double shift, const bound *b)
+static void check_scene(const trb_params *params, double most, double shift, const bound *within)
 {
-  const double     speed = 100 * TRB_PI;
-  trb_system      *system = rig_system(params);
-  const trb_model *m = system->model;
-  double           start[512], y[512], found[COLUMNS][ROWS], exact[COLUMNS][ROWS];
-  trb_motion      *motion = rig_motion(rig_state(system, 4930.0, speed, start), speed);
+  rig_bench        b = rig_open(params, 4930.0);
+  const trb_model *m = b.system->model;
+  double           y[RIG_ROOM], found[COLUMNS][ROWS], exact[COLUMNS][ROWS];
   int              checked = 0;
-  trb_dynamics    *d = rig_dynamics(system, motion);
   for (int trial = 0; trial < 40; trial++) {
-    memcpy(y, start, sizeof y);
-    rig_disturb(system, &seed, y);
-    y[rig_cage(system) + TRB_CAGE_z] += shift;
-    rig_draw_back(d, most, start, y);
+    memcpy(y, b.start, sizeof y);
+    rig_disturb(b.system, &seed, y);
+    y[rig_cage(b.system) + TRB_CAGE_z] += shift;
+    rig_draw_back(b.d, most, b.start, y);
     for (int j = 0; j < m->n_rollers; j++) {
       trb_load     load;
       trb_coupling k;
       k.slopes.modal = NULL;
-      if (!differentiate(d, j, y, exact) || !loads_at(d, j, y, &load, &k.slopes)) continue;
-      trb_coupling_place(&k, &d->rollers[j], &d->system->bodies[TRB_BODY_CAGE], &d->bodies[TRB_BODY_CAGE].pose, &load);
+      if (!differentiate(b.d, j, y, exact) || !loads_at(b.d, j, y, &load, &k.slopes)) continue;
+      trb_coupling_place(&k, &b.d->rollers[j], &b.d->system->bodies[TRB_BODY_CAGE], &b.d->bodies[TRB_BODY_CAGE].pose, &load);
       for (int c = 0; c < COLUMNS; c++) {
         const trb_load slope = c < TRB_ROLLER_SIZE ? trb_coupling_of_roller(&k, c) : trb_coupling_of_body(&k, c - TRB_ROLLER_SIZE);
-        rows_of(&d->rollers[j].frame, &slope, found[c]);
+        rows_of(&b.d->rollers[j].frame, &slope, found[c]);
       }
-      compare(system, j, found, exact, b);
+      compare(b.system, j, found, exact, within);
       checked++;
     }
   }
   CHECK(checked > 30);
-  trb_dynamics_free(d);
-  trb_motion_free(motion);
-  rig_free(system);
+  rig_close(&b);
 }
 
 int main(void)

@@ -9,7 +9,7 @@
 #include "rig.h"
 #include "stepping/jacobian.h"
 
-enum { ROOM = 600 };
+enum { ROOM = RIG_ROOM };
 
 static unsigned long long seed = 77;
 
@@ -30,28 +30,6 @@ static void disturb(const trb_system *system, double amplitude, double *y)
     y[mode_at(system, i)] += 1e4 * amplitude * rig_random(&seed);
     y[mode_at(system, i) + 1] += 1e4 * amplitude * rig_random(&seed);
   }
-}
-
-typedef struct bench {
-  trb_system   *system;
-  trb_motion   *motion;
-  trb_dynamics *d;
-  double        start[ROOM];
-} bench;
-
-static bench set_up(const trb_params *p)
-{
-  bench b = {.system = rig_system(p)};
-  b.motion = rig_motion(rig_state(b.system, 4930.0, 100 * TRB_PI, b.start), 100 * TRB_PI);
-  if (trb_state_size(b.system) > ROOM || trb_dynamics_create(b.system, b.motion, "scalar", &b.d, NULL) != TRB_OK) exit(1);
-  return b;
-}
-
-static void take_down(bench *b)
-{
-  trb_dynamics_free(b->d);
-  trb_motion_free(b->motion);
-  rig_free(b->system);
 }
 
 static void test_refused(void)
@@ -94,11 +72,11 @@ static void test_refused(void)
 static void test_undeformed(void)
 {
   trb_params p = params_of(0);
-  bench      rigid = set_up(&p);
+  rig_bench  rigid = rig_open(&p, 4930.0);
   p.cage_modes = 3;
-  bench  soft = set_up(&p);
-  double y[ROOM] = {0}, rates[2][ROOM];
-  int    pushed = 0;
+  rig_bench soft = rig_open(&p, 4930.0);
+  double    y[ROOM] = {0}, rates[2][ROOM];
+  int       pushed = 0;
   memcpy(y, rigid.start, sizeof y);
   rig_disturb(rigid.system, &seed, y);
   trb_rhs(rigid.d, NULL, 0.01, y, rates[0]);
@@ -108,8 +86,8 @@ static void test_undeformed(void)
   for (int i = 0; i < n; i++) CHECK_NEAR(rates[1][i], rates[0][i], 1e-12 * fabs(rates[0][i]) + 1e-9);
   for (int i = 0; i < 3; i++) pushed += fabs(rates[1][mode_at(soft.system, i) + 1]) > 1.0;
   CHECK(pushed == 3);
-  take_down(&rigid);
-  take_down(&soft);
+  rig_close(&rigid);
+  rig_close(&soft);
 }
 
 static double energy_at(trb_dynamics *d, const double *y)
@@ -124,7 +102,7 @@ static void test_power(int n, double amplitude, double lubrication, double dampi
 {
   trb_params p = params_of(n);
   p.lubrication = lubrication, p.damping = damping;
-  bench b = set_up(&p);
+  rig_bench b = rig_open(&p, 4930.0);
   for (int trial = 0; trial < 20; trial++) {
     double       y[ROOM] = {0}, rates[ROOM], near[2][ROOM] = {{0}}, power = 0.0, size = 1.0;
     const double h = 1e-9;
@@ -145,13 +123,13 @@ static void test_power(int n, double amplitude, double lubrication, double dampi
     }
     CHECK_NEAR(change, power, 1e-6 * size);
   }
-  take_down(&b);
+  rig_close(&b);
 }
 
 static void test_jacobian(int n, double amplitude, double most, double tolerance)
 {
   const trb_params p = params_of(n);
-  bench            b = set_up(&p);
+  rig_bench        b = rig_open(&p, 4930.0);
   for (int trial = 0; trial < 5; trial++) {
     double y[ROOM] = {0};
     memcpy(y, b.start, sizeof y);
@@ -159,14 +137,14 @@ static void test_jacobian(int n, double amplitude, double most, double tolerance
     rig_draw_back(b.d, most, b.start, y);
     CHECK_NEAR(rig_jacobian_off(b.system, b.motion, 0.01, y), 0.0, tolerance);
   }
-  take_down(&b);
+  rig_close(&b);
 }
 
 /* A proof that a roller touches nothing holds wherever the modes move the faces. */
 static void test_gaps_left(void)
 {
   const trb_params p = params_of(4);
-  bench            b = set_up(&p);
+  rig_bench        b = rig_open(&p, 4930.0);
   const trb_model *m = b.system->model;
   int              held = 0, touched = 0, free_of = 0;
   for (int trial = 0; trial < 40; trial++) {
@@ -202,7 +180,7 @@ static void test_gaps_left(void)
     }
   }
   CHECK(free_of > 100 && held > 1000 && touched > 100);
-  take_down(&b);
+  rig_close(&b);
 }
 
 /* No vertex of a face moves by more, for a unit of a mode's amplitude, than the bound of its kind of gap says. */
@@ -240,7 +218,7 @@ static void test_steps(const char *method)
 {
   trb_params p = params_of(4);
   p.damping = 1;
-  bench        b = set_up(&p);
+  rig_bench    b = rig_open(&p, 4930.0);
   trb_settings settings = rig_settings();
   settings.rtol = 1e-7, settings.atol_position = 1e-13, settings.atol_velocity = 1e-8, settings.atol_angle = 1e-11,
   settings.atol_spin = 1e-6;
@@ -253,7 +231,7 @@ static void test_steps(const char *method)
   CHECK(end[trb_state_quadrature(b.system) + TRB_Q_loss_pocket] > 0.0);
   CHECK_NEAR(rig_balance(b.system, b.motion, sim->integrator.time, end), before, 1e-3 * lost);
   trb_simulation_free(sim);
-  take_down(&b);
+  rig_close(&b);
 }
 
 /* Sums over modes, of every instruction set, entry by entry. */

@@ -9,7 +9,7 @@
 #include "rig.h"
 #include "surface/sphere.h"
 
-enum { ROOM = 600, MOST_FACES = 2000, STATES = 60 };
+enum { ROOM = RIG_ROOM, MOST_FACES = 2000, STATES = 60 };
 
 static unsigned long long seed = 91;
 
@@ -48,21 +48,14 @@ typedef struct division {
   int    wall;
 } division;
 
-typedef struct bench {
-  trb_model    *model;
-  trb_system   *system;
-  trb_motion   *motion;
-  trb_dynamics *d;
-  double        start[ROOM];
-} bench;
-
-static bench set_up(const trb_params *p, const division *by)
+static rig_bench set_up(const trb_params *p, const division *by)
 {
   trb_face          whole[RIG_FACES];
   static trb_face   faces[MOST_FACES];
   double            deviation[12];
   trb_message       message = {TRB_OK, ""};
-  bench             b = {.model = NULL};
+  rig_bench         b = {.system = NULL};
+  trb_model        *model;
   const trb_system *plain = rig_system(p);
   b.motion = rig_motion(rig_state(plain, 4930.0, 100 * TRB_PI, b.start), 100 * TRB_PI);
   rig_free((trb_system *)plain);
@@ -72,27 +65,20 @@ static bench set_up(const trb_params *p, const division *by)
   n += strips(&whole[2], by->wall, by->wall, 0.0, faces + n);
   faces[n++] = whole[3];
   for (int i = 0; i < 12; i++) deviation[i] = 5e-6 * rig_random(&seed);
-  if (trb_model_create(p, deviation, 12, faces, n, &b.model, &message) != TRB_OK) {
+  if (trb_model_create(p, deviation, 12, faces, n, &model, &message) != TRB_OK) {
     printf("%s\n", message.text);
     exit(1);
   }
-  double *rows = rig_modes(b.model, &columns);
+  double *rows = rig_modes(model, &columns);
   double  drops[3 * 200] = {0};
-  for (int k = 2; k < b.model->n_nodes - 2; k++) drops[k] = -bulge;
-  const int made = trb_model_set_drops(b.model, drops, bulge > 0.0 ? 3 : 0, b.model->n_nodes, &message) == TRB_OK &&
-                   trb_model_set_modes(b.model, rows, (int)p->cage_modes, columns, &message) == TRB_OK &&
-                   trb_system_tapered(b.model, &b.system, &message) == TRB_OK &&
+  for (int k = 2; k < model->n_nodes - 2; k++) drops[k] = -bulge;
+  const int made = trb_model_set_drops(model, drops, bulge > 0.0 ? 3 : 0, model->n_nodes, &message) == TRB_OK &&
+                   trb_model_set_modes(model, rows, (int)p->cage_modes, columns, &message) == TRB_OK &&
+                   trb_system_tapered(model, &b.system, &message) == TRB_OK &&
                    trb_dynamics_create(b.system, b.motion, "scalar", &b.d, NULL) == TRB_OK;
   free(rows);
   if (!made || trb_state_size(b.system) > ROOM) exit(1);
   return b;
-}
-
-static void take_down(bench *b)
-{
-  trb_dynamics_free(b->d);
-  trb_motion_free(b->motion);
-  rig_free(b->system);
 }
 
 /* What a roller gets from its pocket. */
@@ -141,9 +127,9 @@ typedef struct happened {
   int clear, touching, films, apart; /* apart: states in which facets were left out beside others that touch */
 } happened;
 
-static void compare(const bench *b, const trb_instant *at, const trb_pair *row, int roller, happened *seen)
+static void compare(const rig_bench *b, const trb_instant *at, const trb_pair *row, int roller, happened *seen)
 {
-  const trb_model      *m = b->model;
+  const trb_model      *m = b->system->model;
   const trb_rigid_pose *cage = &at->bodies[row->b].pose;
   double                force[12 * 8] = {0}, friction[12 * 8] = {0}, depth[12 * 8];
   trb_detail            all = {.pocket_force = force, .pocket_friction = friction, .pocket_interference = depth};
@@ -172,7 +158,7 @@ static void compare(const bench *b, const trb_instant *at, const trb_pair *row, 
 }
 
 /* Near the place where pockets touch; far: turned and away by up to that many times as much. */
-static void disturb(const bench *b, double far, double *y)
+static void disturb(const rig_bench *b, double far, double *y)
 {
   memcpy(y, b->start, sizeof b->start);
   rig_disturb(b->system, &seed, y);
@@ -180,13 +166,13 @@ static void disturb(const bench *b, double far, double *y)
     for (int i = 0; i < TRB_PLACE_OF_ROLLER; i++)
       y[trb_state_roller(b->system, j) + i] += far * (i == TRB_ROLLER_psi ? 2e-4 : 1e-5 + 2e-4 * (i > TRB_ROLLER_z)) * rig_random(&seed);
   for (int i = 0; i < TRB_PLACE_OF_BODY; i++) y[rig_cage(b->system) + i] += far * (i < 3 ? 1e-5 : 1e-4) * rig_random(&seed);
-  for (int i = 0; i < 2 * b->model->modes.n; i++) y[rig_cage(b->system) + TRB_CAGE_SIZE + i] += 0.02 * rig_random(&seed);
+  for (int i = 0; i < 2 * b->system->model->modes.n; i++) y[rig_cage(b->system) + TRB_CAGE_SIZE + i] += 0.02 * rig_random(&seed);
 }
 
 static happened test_same_forces(const trb_params *p, const division *by)
 {
-  bench    b = set_up(p, by);
-  happened seen = {0};
+  rig_bench b = set_up(p, by);
+  happened  seen = {0};
   for (int state = 0; state < STATES; state++) {
     double      y[ROOM] = {0};
     trb_body_at bodies[TRB_MOST_BODIES];
@@ -207,7 +193,7 @@ static happened test_same_forces(const trb_params *p, const division *by)
   }
   fprintf(stderr, "%d clear, %d touching, %d of them with facets left out, %d with films\n", seen.clear, seen.touching, seen.apart,
           seen.films);
-  take_down(&b);
+  rig_close(&b);
   return seen;
 }
 

@@ -79,23 +79,21 @@ static void compare(const trb_system *system, double tolerance)
 /* most: force of a roller on the cage, N. Loads over radii, which the slopes of pockets leave out, grow with it. */
 static void check_scene(const trb_params *params, double load, double most, int touching, double tolerance)
 {
-  trb_system      *system = rig_system(params);
-  const trb_model *m = system->model;
-  double           y[512], start[512];
-  const double     speed = 100 * TRB_PI;
-  trb_motion      *motion = rig_motion(rig_state(system, load, speed, y), speed);
-  int              coupled = 0;
-  trb_dynamics    *d = rig_dynamics(system, motion);
-  trb_jacobian    *jac = rig_jacobian(system, motion);
-  trb_arrow       *arrow = rig_arrow(system);
-  memcpy(start, y, sizeof start);
+  rig_bench         b = rig_open(params, load);
+  const trb_system *system = b.system;
+  const trb_model  *m = system->model;
+  double            y[RIG_ROOM];
+  int               coupled = 0;
+  trb_jacobian     *jac = rig_jacobian(system, b.motion);
+  trb_arrow        *arrow = rig_arrow(system);
+  memcpy(y, b.start, sizeof y);
   rig_disturb(system, &seed, y);
-  rig_draw_back(d, most, start, y);
+  rig_draw_back(b.d, most, b.start, y);
   trb_jacobian_fill(jac, 0.01, y, 1, arrow);
   for (int j = 0; j < m->n_rollers; j++) coupled += arrow->borders[j].parts != 0U;
   CHECK(coupled >= touching);
   expand(system, arrow);
-  differentiate(d, 0.01, y, 0.05);
+  differentiate(b.d, 0.01, y, 0.05);
   compare(system, tolerance);
   /* what the rings do is kept where it need not be fresh: at the same state it is the same */
   trb_jacobian_fill(jac, 0.01, y, 0, arrow);
@@ -104,9 +102,7 @@ static void check_scene(const trb_params *params, double load, double most, int 
   compare(system, tolerance);
   trb_jacobian_free(jac);
   trb_arrow_free(arrow);
-  trb_dynamics_free(d);
-  trb_motion_free(motion);
-  rig_free(system);
+  rig_close(&b);
 }
 
 /* As impacts are, and with loads of kilonewtons. */

@@ -71,19 +71,16 @@ static void walk(const trb_system *system, trb_dynamics *d, const double *start,
 
 static void test_pockets(const trb_params *params)
 {
-  const double  speed = 100.0 * TRB_PI;
-  trb_system   *system = rig_system(params);
-  double        y[MOST], start[MOST];
-  trb_motion   *motion = rig_motion(rig_state(system, 4930.0, speed, y), speed);
-  rig_tried     of[TRB_N_GAPS] = {{0}};
-  int           held = 0, reached = 0;
-  trb_dynamics *d = rig_dynamics(system, motion);
-  trb_dynamics_pose(d, 0.0, y);
+  rig_bench b = rig_open(params, 4930.0);
+  double    start[RIG_ROOM];
+  rig_tried of[TRB_N_GAPS] = {{0}};
+  int       held = 0, reached = 0;
+  trb_dynamics_pose(b.d, 0.0, b.start);
   for (int trial = 0; trial < 12; trial++) {
-    memcpy(start, y, sizeof start);
-    if (trial % 3 == 0) rig_disturb(system, &seed, start);
-    for (int i = 0; i < TRB_PLACE_OF_BODY; i++) start[rig_cage(system) + i] += unit[TRB_PLACE_OF_ROLLER + i] * rig_random(&seed);
-    walk(system, d, start, of, &held, &reached);
+    memcpy(start, b.start, sizeof start);
+    if (trial % 3 == 0) rig_disturb(b.system, &seed, start);
+    for (int i = 0; i < TRB_PLACE_OF_BODY; i++) start[rig_cage(b.system) + i] += unit[TRB_PLACE_OF_ROLLER + i] * rig_random(&seed);
+    walk(b.system, b.d, start, of, &held, &reached);
   }
   for (int g = 0; g < TRB_N_GAPS; g++) {
     fprintf(stderr, "%s: change over bound %.3f at most, %.3f in the mean of %d\n", g == TRB_GAP_FLANK ? "flank" : "ends", of[g].tightest,
@@ -91,9 +88,7 @@ static void test_pockets(const trb_params *params)
     CHECK(of[g].n > 1000 && of[g].tightest > 0.8);
   }
   CHECK(held > 1000 && reached > 20);
-  trb_dynamics_free(d);
-  trb_motion_free(motion);
-  rig_free(system);
+  rig_close(&b);
 }
 
 /* Displacements beyond those that arms are made for, and gaps that are not a number, prove nothing. */
