@@ -212,7 +212,6 @@ WRITING = {
     "copy2",
 }
 MAY_WRITE = {
-    "app/forms.py": "fills memory",
     "base/own_files.py": "the one way",
     "base/locks.py": "opens what is there",
     "results/hdf5_file.py": "fills a draft",
