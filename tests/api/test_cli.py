@@ -178,7 +178,7 @@ def test_info_of_a_case_and_the_list_of_cases(capsys: pytest.CaptureFixture[str]
         (["run", "rig_30310", "--revolutions", "-3"], "revolutions = -3.0 : must be > 0"),
         (["run", "rig_30310", "--revolutions", "nan"], "revolutions"),
         (["run", "rig_30310", "--set", "scene.axial_load=-1"], "axial_load"),
-        (["run", "rig_30310", "--set", "scene.speed_rpm=0"], "stands still"),
+        (["run", "rig_30310", "--set", "scene.speed_rpm=0"], "is at rest"),
         (["plot", "nothing.h5"], "there is no such file"),
         (["info", "nothing"], "cases that ship with the package"),
     ],
