@@ -62,8 +62,6 @@ class Effect:
     patch: Patch | None = None
 
 
-_THERMAL = ((r"\n    if \(m->params\.thermal > 0\.0\) \{.*?\n    \}", ""),)
-
 EFFECTS: Final = (
     Effect(
         "gravity",
@@ -116,7 +114,7 @@ EFFECTS: Final = (
         {"traction": "muraki_kimura", "thermal": True},
         {"traction": "muraki_kimura"},
         counters=("thermal_nodes",),
-        patch={KERNEL: _THERMAL, RIB: _THERMAL},
+        patch={"contact/passes.h": ((r"\n    if \(m->params\.thermal > 0\.0\) \{.*?\n    \}", ""),)},
     ),
     Effect(
         "rolling resistance",

@@ -55,6 +55,7 @@ WHOLE = {
     "make adversary",
     "make mutate",
     "make sanitize",
+    "make walk",
     "make cross",
     ".ci/run",
     ".venv/bin/pytest",
