@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import h5py
@@ -46,6 +49,30 @@ def test_bits_do_not_depend_on_the_threads_of_the_machine(built: CageSolid) -> N
             found.append(built.solid.natural(20))
     for one, other in zip(*found, strict=True):
         assert np.array_equal(one, other)
+
+
+FORK = """
+import os, sys, threading, time
+from trbdyn.cage.solid import _one_thread
+
+def other():
+    with _one_thread():
+        begun.set()
+        time.sleep(0.2)
+
+begun = threading.Event()
+threading.Thread(target=other).start()
+begun.wait()
+child = os.fork()
+with _one_thread():
+    pass
+sys.exit(os.waitpid(child, 0)[1] if child else 0)
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork here")
+def test_a_process_forked_while_modes_are_found_finds_some_too() -> None:
+    assert subprocess.run([sys.executable, "-c", FORK], timeout=60.0, check=False).returncode == 0
 
 
 def test_faces_follow_rigid_motions(built: CageSolid) -> None:

@@ -7,6 +7,7 @@ come from anywhere. Displacements are quadratic: 20 nodes in a hexahedron, 10 in
 
 from __future__ import annotations
 
+import os
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -37,6 +38,8 @@ PRECISE: Final = 1e-7
 """Forces that a static solution may leave, over the largest load."""
 
 _ALONE: Final = threading.RLock()
+if hasattr(os, "register_at_fork"):  # a fork waits for the solution of another thread, or its child would wait for ever
+    os.register_at_fork(before=_ALONE.acquire, after_in_parent=_ALONE.release, after_in_child=_ALONE.release)
 
 
 @contextmanager
