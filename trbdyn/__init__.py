@@ -69,6 +69,7 @@ if TYPE_CHECKING:
     from trbdyn.results import observables as observables
     from trbdyn.results.assembly import AssemblyResult as AssemblyResult, load as load
     from trbdyn.results.result import Result as Result
+    from trbdyn.run.check import check as check
     from trbdyn.run.options import RunOptions as RunOptions
     from trbdyn.run.rating import rating as rating
     from trbdyn.run.resume import resume as resume

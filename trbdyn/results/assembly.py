@@ -107,6 +107,11 @@ class AssemblyResult(Mapping[str, Result], Displayed):
         title = f"Result: {'success' if self.success else 'failed'}"
         return Shown(title, tuple(rows), head=("", *self), notes=notes, parts=parts)
 
+    @property
+    def subject(self) -> Assembly | None:
+        """What was simulated; None where seats were given in place of an assembly."""
+        return self.assembly
+
     def summary(self) -> dict[str, Summary]:
         """The summary of each bearing by its name, with its mean loads: ``axial_load`` and ``radial_load`` (N)."""
         found = {}

@@ -204,6 +204,11 @@ class Result(Derived, Displayed):
         return tuple(self._fields.values())
 
     @property
+    def subject(self) -> Scene | None:
+        """What was simulated: the scene; None of a bearing on a shaft, which runs with the others alone."""
+        return None if "assembly" in self.meta else self.scene
+
+    @property
     def ring_loads(self) -> tuple[Array, Array]:
         """Axial load towards the small ends of the rollers, and radial load, that the inner ring carries at each record (N)."""
         force = self["ring_force"]

@@ -82,12 +82,22 @@ class RunningBearing:
 
 
 class Run:
-    """One call of `Simulation.run`, or what is left of it when it is resumed after `done` records."""
+    """One call of `Simulation.run`, or what is left of it when it is resumed after `done` records. `watched`: its energy is
+    judged.
+    """
 
     def __init__(
-        self, sim: Simulation, options: RunOptions, times: Array, callback: Callback | None, done: int = 0
+        self,
+        sim: Simulation,
+        options: RunOptions,
+        times: Array,
+        callback: Callback | None,
+        done: int = 0,
+        *,
+        watched: bool = True,
     ) -> None:
         self.sim = sim
+        self.watched = watched
         self.options = options
         self.times = times
         self.callback = callback
@@ -225,7 +235,8 @@ class Run:
         self._keep_peaks(float(self.times[0]))
         due = checkpoint.next_time(sim._begun, every)
         going_on = self.options.when_wrong == "go_on"
-        watches = [Watch(sim, one.of, float(self.times[-1]), one.doubts, going_on=going_on) for one in self.bearings]
+        end, watched = float(self.times[-1]), self.bearings if self.watched else ()
+        watches = [Watch(sim, one.of, end, one.doubts, going_on=going_on) for one in watched]
         self.watches = watches
         while self.done < self.times.size:
             look = self.bearings[0].until.next_look(self.done)

@@ -1,0 +1,307 @@
+"""How accurate the numbers of a run are: measured at that run, by repeating it.
+
+The run, or pieces of it, is repeated in pairs: once with its own tolerances from a state that is moved by a millionth, and
+once with those of 'reference' and every force exact (a tenth of them where the run itself had those of 'reference'). The
+difference of both is what the tolerances do to a number, its bias; what repetitions that are as good differ by is its
+scatter. Further pairs are made until every number is known to be right within `CLEAR`, or wrong beyond it, or the time that
+was given is over. A number that still scatters too much then is called unsettled.
+
+What a check cannot tell: errors of the model, and numbers whose memory is longer than the pieces, as the orbit of a cage that
+creeps for seconds (docs/theory/numerics.md#check-of-a-run).
+"""
+
+from __future__ import annotations
+
+import math
+import time as clock
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Final
+
+import numpy as np
+from scipy.special import stdtrit
+
+from trbdyn.base.shown import Displayed, Shown
+from trbdyn.base.validation import number_of
+from trbdyn.errors import InputError
+from trbdyn.results.assembly import AssemblyResult
+from trbdyn.results.quantities import QUANTITIES
+from trbdyn.results.result import Result
+from trbdyn.run.repeat import DEARER, Piece, Repeating, Sample, pieces
+
+CLEAR: Final = 0.03
+"""Share of a number within which it must be known to be right."""
+MOST_PAIRS: Final = 6
+"""Pairs of repetitions of a whole run at most."""
+BUDGET_S: Final = 2.0
+"""Processor time of a check (s), or `BUDGET_SHARE` of that of the run if it is more."""
+BUDGET_SHARE: Final = 0.1
+
+CHECKED: Final = (
+    "power_loss",
+    "torque",
+    "outer_load_mean",
+    "inner_load_mean",
+    "rib_load_mean",
+    "film_parameter_outer",
+    "film_parameter_inner",
+    "pocket_force_p95",
+    "pocket_duty",
+    "pocket_force_peak",
+    "land_force_peak",
+    "outer_pressure_max",
+    "inner_pressure_max",
+    "skew_rms",
+)
+"""Numbers of the summary whose memory is short enough for pieces of a run; a bearing has those of them that its summary has."""
+SLOW: Final = "orbit of the cage, spacing of the rollers and settling: their memory is longer than a check"
+
+
+NOTHING: Final = (
+    "Nothing was checked: a bearing on a shaft is repeated with the others, by the result of all of them, and what was made from "
+    "seats in place of an assembly cannot be made again."
+)
+
+
+@dataclass(frozen=True)
+class Checked:
+    """What a check has found of a number.
+
+    Attributes
+    ----------
+    bias : float
+        What the tolerances of the run do to it, over its size: positive where the run has too much.
+    half_width : float
+        Half of the 95 % confidence interval of the bias, over the value.
+    scatter : float
+        Standard deviation over repetitions that are as good, over the value.
+    answer : {'clear', 'biased', 'unsettled'}
+        Known to be right within `CLEAR`; known to be wrong by more than the interval of its bias, and not known to be within
+        `CLEAR`; or not known.
+    """
+
+    bias: float
+    half_width: float
+    scatter: float
+    answer: str
+
+    @property
+    def error(self) -> float:
+        """Error over the value that the number may have in this run: of bias, its interval and the scatter."""
+        return abs(self.bias) + self.half_width + 2.0 * self.scatter
+
+    def __str__(self) -> str:
+        low, high = (100.0 * (self.bias + sign * self.half_width) for sign in (-1.0, 1.0))
+        if not self.error < 1.0:
+            return "not known: it scatters too much, or too little of the run was repeated"
+        if self.answer == "clear":
+            return f"right within {100.0 * self.error:.2g} %"
+        if self.answer == "biased":
+            way = "high" if self.bias > 0.0 else "low"
+            least, most = sorted(abs(end) for end in (low, high))
+            return f"{least:.2g} to {most:.2g} % too {way} by the tolerances of the run"
+        return f"not known better than within {100.0 * self.error:.2g} %"
+
+
+@dataclass(frozen=True)
+class Check(Displayed):
+    """What `trbdyn.check` has found.
+
+    Attributes
+    ----------
+    numbers : dict of str to Checked
+        By the names of the summary; of bearings on a shaft with the bearing's name before it.
+    pairs : int
+        Repetitions with the run's own tolerances and with tighter ones, each.
+    covered : float
+        Share of the run that was repeated.
+    spent_s : float
+        Processor time of the check (s); it is no part of that of the run.
+    note : str
+        In a sentence what was done, and what it cannot tell.
+    """
+
+    numbers: Mapping[str, Checked]
+    pairs: int = 0
+    covered: float = 0.0
+    spent_s: float = 0.0
+    note: str = ""
+    words: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def answer(self) -> str:
+        """The worst of the answers: 'biased', 'unsettled', 'clear', or 'unknown' where nothing was checked."""
+        found = {one.answer for one in self.numbers.values()}
+        return next((answer for answer in ("biased", "unsettled", "clear") if answer in found), "unknown")
+
+    def doubts(self) -> list[str]:
+        """A sentence for each number that is not known to be right within `CLEAR`."""
+        return [f"{self.words.get(name, name)}: {one}" for name, one in self.numbers.items() if one.answer != "clear"]
+
+    def __repr__(self) -> str:
+        return self._shown().text()
+
+    def _shown(self) -> Shown:
+        rows = tuple(
+            (self.words.get(name, name), f"{100.0 * one.error:.2g}", "%", str(one))
+            for name, one in self.numbers.items()
+        )
+        return Shown(f"Check of the run: {self.answer}", rows, ("number", "value", "unit", "meaning"), (self.note,))
+
+
+def check(result: Result | AssemblyResult, *, budget_s: float | None = None) -> Check:
+    """Measure how accurate the numbers of a run are, by repeating it or pieces of it.
+
+    Parameters
+    ----------
+    result : Result or AssemblyResult
+        The run, in memory or from a file.
+    budget_s : float, optional
+        Processor time that the check may take (s); by default 2 s, or a tenth of the time of the run if that is more. The
+        pair that is begun is finished.
+
+    Returns
+    -------
+    Check
+        Bias, its interval and scatter of losses, torque, loads, films and forces in pockets.
+
+    Raises
+    ------
+    InputError
+        If `budget_s` is not positive, or the run has no records to compare.
+
+    Notes
+    -----
+    Pieces of a run of bearings on a shaft begin at its start alone; what follows is not checked, and the note says so.
+
+    Examples
+    --------
+    >>> import trbdyn as trb
+    >>> result = trb.Simulation(trb.cases.scene_30310(3000.0, 4930.0)).run(revolutions=0.2)
+    >>> found = trb.check(result, budget_s=0.5)
+    >>> found.numbers["torque"].answer
+    'clear'
+    """
+    budget = _budget(result) if budget_s is None else number_of("budget_s", budget_s)
+    if not budget > 0.0:
+        raise InputError.of("budget_s", budget_s, "must be > 0 (s)")
+    if result.time.size < 2:
+        raise InputError.of("result", f"{result.time.size} records", "must have two records at least, to compare them")
+    return _Checking(result, budget).go()
+
+
+def _budget(result: Result | AssemblyResult) -> float:
+    first = next(iter(result.by_name.values()))
+    return max(BUDGET_S, BUDGET_SHARE * float(first.stats.get("stepping_s") or 0.0))
+
+
+class _Checking:
+    """One check: pairs of repetitions until all numbers are known or the time is over, and what they say."""
+
+    def __init__(self, result: Result | AssemblyResult, budget: float) -> None:
+        self.budget, self.began = budget, clock.process_time()
+        self.repeating = Repeating(result, CHECKED)
+        self.whole = False
+
+    def go(self) -> Check:
+        repeating = self.repeating
+        if repeating.subject is None:
+            return Check({}, note=NOTHING)
+        cost = repeating.cost_per_second * (1.0 + DEARER)
+        length = repeating.length
+        self.whole = cost * length <= self.budget
+        if self.whole:
+            samples = self._again(repeating.whole)
+        elif len(repeating.parts) > 1:
+            samples = self._again(next(pieces(repeating, self.budget / cost)))
+        else:
+            samples = self._each(pieces(repeating, self.budget / cost))
+        samples = [one for one in samples if one.own and one.tight]
+        names = [name for name in repeating.values if all(one.has(name) for one in samples)] if samples else []
+        numbers = {name: judged(name, samples) for name in names}
+        covered = min(sum(one.piece.until - one.piece.begin for one in samples) / length, 1.0)
+        pairs = sum(len(one.tight) for one in samples)
+        spent = clock.process_time() - self.began
+        return Check(numbers, pairs, covered, spent, self._note(samples, covered, spent), self._words())
+
+    def _again(self, piece: Piece) -> list[Sample]:
+        """Pairs of one piece, until its numbers are known."""
+        repeating = self.repeating
+        sample = repeating.sample(piece)
+        for pair in range(MOST_PAIRS):
+            if not repeating.pair(sample, moved=pair > 0):
+                break
+            if all(judged(name, [sample]).answer != "unsettled" for name in sample.own[0] if sample.has(name)):
+                break
+            if (clock.process_time() - self.began) * (pair + 2) / (pair + 1) > self.budget:
+                break
+        return [sample]
+
+    def _each(self, all_pieces: Iterable[Piece]) -> list[Sample]:
+        """A pair of each piece, as many as the time allows, at least one."""
+        samples: list[Sample] = []
+        for piece in all_pieces:
+            before = clock.process_time()
+            sample = self.repeating.sample(piece)
+            self.repeating.pair(sample, moved=True)
+            samples.append(sample)
+            now = clock.process_time()
+            if now - self.began + (now - before) > self.budget:
+                break
+        return samples
+
+    def _words(self) -> dict[str, str]:
+        words = {key: QUANTITIES[key].words for key in CHECKED}
+        return {
+            f"{name}_{key}" if name else key: f"{name}: {text}" if name else text
+            for name in self.repeating.parts
+            for key, text in words.items()
+        }
+
+    def _note(self, samples: Sequence[Sample], covered: float, spent: float) -> str:
+        if not samples:
+            return "Nothing could be checked: the repetitions with tighter tolerances did not come to their end."
+        if self.whole:
+            what = f"the whole run was repeated, {_times(len(samples[0].tight))}"
+        elif len(samples) == 1 and len(self.repeating.parts) > 1:
+            what = f"the first {100.0 * covered:.2g} % of the run were repeated, {_times(len(samples[0].tight))}"
+        else:
+            what = f"{len(samples)} pieces, {100.0 * covered:.2g} % of the run, were repeated, each from a state of the run"
+        older = "" if self.whole else " what the tolerances did before a piece began;"
+        return (
+            f"Measured at this run: {what}, with its own tolerances and with those of 'reference' or a tenth of them, in "
+            f"{spent:.2g} s of processor time that are no part of the run's. Not checked:{older} {SLOW}; and errors of the model."
+        )
+
+
+def _times(count: int) -> str:
+    return "once" if count == 1 else f"{count} times"
+
+
+def judged(name: str, samples: Sequence[Sample]) -> Checked:
+    """Bias, its interval and scatter of a number: over pieces that are repeated once each, or over one that is repeated often."""
+    sizes = [[abs(run[name]) for one in samples for run in runs(one)] for runs in (lambda s: s.own, lambda s: s.tight)]
+    scale = max(float(np.mean(size)) for size in sizes)
+    if scale == 0.0:
+        return Checked(0.0, 0.0, 0.0, "clear")
+    squares, degrees = 0.0, 0
+    for one in samples:
+        for runs in (one.own, one.tight):
+            values = np.array([run[name] for run in runs]) / scale
+            squares += float(np.sum((values - values.mean()) ** 2))
+            degrees += values.size - 1
+    scatter = math.sqrt(squares / max(degrees, 1))
+    off = np.array([(_mean(one.own, name) - _mean(one.tight, name)) / scale for one in samples])
+    errors = [scatter**2 * (1.0 / len(one.own) + 1.0 / len(one.tight)) for one in samples]
+    # pieces that differ by more than their own scatter tell how far others, which were not repeated, may be off
+    between = float(np.var(off, ddof=1)) if off.size > 1 else 0.0
+    error = max(float(np.mean(errors)), between) / off.size
+    known = degrees if off.size == 1 else off.size - 1
+    bias, half = float(off.mean()), float(stdtrit(known, 0.975)) * math.sqrt(error) if known else math.inf
+    if abs(bias) + half < CLEAR:
+        return Checked(bias, half, scatter, "clear")
+    return Checked(bias, half, scatter, "biased" if abs(bias) > max(half, CLEAR) else "unsettled")
+
+
+def _mean(runs: Sequence[Mapping[str, float]], name: str) -> float:
+    return float(np.mean([run[name] for run in runs]))

@@ -1,0 +1,200 @@
+"""A run, or pieces of it, made a second time: with its own tolerances from states that are moved a little, and with tighter ones.
+
+A piece of a run of one bearing begins in the state of a record; one of bearings on a shaft at the start of the run alone.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import numpy as np
+
+from trbdyn.errors import StepError
+from trbdyn.model.assembly import Assembly
+from trbdyn.model.motion import History
+from trbdyn.model.scene import Scene
+from trbdyn.results.assembly import AssemblyResult
+from trbdyn.results.result import Result
+from trbdyn.results.summary import averages, extremes
+from trbdyn.run.options import ACCURACY, OF_ONE_RUN, RunOptions
+from trbdyn.run.replay import NEEDED, Replay
+from trbdyn.run.running import Run, output_times
+from trbdyn.run.simulation import Simulation
+
+MOVED: Final = 1e-6
+"""Share by which the numbers of a state are moved: enough for bodies that hit each other to go ways of their own; a thousandth
+would be another problem."""
+STRATA: Final = 8
+"""Pieces over which a run is divided that is too long to be repeated."""
+LEFT_OUT: Final = 5e-3
+"""Time at the beginning of such a piece in which vibrations grow to their size (s)."""
+AFTER_JUMP: Final = 2.0
+"""Turns after a jump of a load or a speed that belong to its piece."""
+LEAST_RECORDS: Final = 8
+"""Records of the run in a piece below which its numbers there come from repetitions alone."""
+FINER: Final = 0.1
+"""Factor of tolerances that are those of 'reference' already."""
+DEARER: Final = 6.0
+"""Expected time of a tight repetition over that of one with the run's own tolerances, before any was made."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A part of a run from a record on, between two times (s); it is compared from `since` on."""
+
+    record: int
+    begin: float
+    since: float
+    until: float
+
+
+@dataclass
+class Sample:
+    """Numbers of a piece: of the run itself and of repetitions that are as good, and of tight ones."""
+
+    piece: Piece
+    own: list[dict[str, float]] = field(default_factory=list)
+    tight: list[dict[str, float]] = field(default_factory=list)
+
+    def has(self, name: str) -> bool:
+        """Whether all of them have a number."""
+        return all(name in run for run in (*self.own, *self.tight))
+
+
+class Repeating:
+    """Repeats a run and reads some numbers of its summary (`names`)."""
+
+    def __init__(self, result: Result | AssemblyResult, names: Sequence[str]) -> None:
+        self.names = names
+        self.parts: Mapping[str, Result] = result.by_name
+        self.first = next(iter(self.parts.values()))
+        self.time = self.first["time"]
+        self.subject: Scene | Assembly | None = result.subject
+        given: dict[str, Any] = dict(self.first.meta.get("settings") or {})
+        known = set(RunOptions.model_fields) - set(OF_ONE_RUN) - {"checkpoint_every"}
+        self._own = {name: value for name, value in given.items() if name in known and value is not None}
+        self._own["when_wrong"] = "go_on"
+        self._tight = self._own | tighter(RunOptions(**self._own))
+        self._every = float(np.median(np.diff(self.time)))
+        self._replay: Replay | None = None
+        has_motion = set(NEEDED) <= set(self.first.groups)
+        self.window = self.first.settling().time if has_motion else float(self.time[0])
+        """Begin of the averages of the run (s)."""
+        self.whole = Piece(0, float(self.time[0]), float(self.time[0]), float(self.time[-1]))
+        self.values = self._numbers(self.parts, self.whole.since, self.window)
+        self._random = np.random.default_rng(20)
+
+    @property
+    def length(self) -> float:
+        """Length of the run (s)."""
+        return float(self.time[-1] - self.time[0])
+
+    @property
+    def cost_per_second(self) -> float:
+        """Time that a second of the bearing took (s)."""
+        return float(self.first.stats.get("stepping_s") or math.inf) / self.length
+
+    def sample(self, piece: Piece) -> Sample:
+        """A piece with the numbers of the run itself, if it has records enough there."""
+        if piece == self.whole:
+            return Sample(piece, [self.values])
+        if int(np.sum((self.time >= piece.since) & (self.time <= piece.until))) < LEAST_RECORDS:
+            return Sample(piece)
+        parts = {name: part.window(piece.begin, piece.until) for name, part in self.parts.items()}
+        return Sample(piece, [self._numbers(parts, piece.since, piece.since)])
+
+    def pair(self, sample: Sample, *, moved: bool) -> bool:
+        """Repeat a piece with the run's own tolerances from a state that is moved, and with tighter ones, from such a state if
+        `moved`. False where a repetition did not come to its end.
+        """
+        piece = sample.piece
+        averaged = self.window if piece == self.whole else piece.since
+        own = self._repeat(piece, self._own, moved=True)
+        tight = None if own is None else self._repeat(piece, self._tight, moved=moved)
+        if own is None or tight is None:
+            return False
+        sample.own.append(self._numbers(own, piece.since, averaged))
+        sample.tight.append(self._numbers(tight, piece.since, averaged))
+        return True
+
+    def _repeat(self, piece: Piece, options: Mapping[str, Any], *, moved: bool) -> Mapping[str, Result] | None:
+        """A repetition of a piece with these options, not watched; None where it fails."""
+        assert self.subject is not None
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            sim: Simulation[Any] = Simulation(self.subject, **options)
+            vector = sim.state.vector
+            if piece.record or not math.isclose(piece.begin, sim.time, abs_tol=1e-12):
+                self._replay = self._replay or Replay(self.first)
+                vector = self._replay.state(piece.record)
+            if moved:
+                vector = vector * (1.0 + MOVED * self._random.standard_normal(vector.size))
+            sim.set_state(vector, piece.begin)
+            every = min(self._every, (piece.until - piece.since) / (2 * LEAST_RECORDS))
+            times = output_times(piece.begin, piece.until, every)
+            settings = sim.options.replace(save_every=every, save_groups=self.first.groups)
+            try:
+                return Run(sim, settings, times, None, watched=False).go(progress=False).by_name
+            except StepError:
+                return None
+
+    def _numbers(self, parts: Mapping[str, Result], since: float, averaged: float) -> dict[str, float]:
+        """Extremes from a time (s) on, and averages from another one on; of several bearings with their names."""
+        found: dict[str, float] = {}
+        for name, part in parts.items():
+            largest = extremes(part if since <= part["time"][0] else part.window(since))
+            numbers = largest | averages(part.window(averaged))
+            found |= {
+                f"{name}_{key}" if name else key: float(numbers[key])
+                for key in self.names
+                if isinstance(numbers.get(key), float | int)
+            }
+        return found
+
+
+def pieces(run: Repeating, most: float) -> Iterator[Piece]:
+    """Pieces of a run, of a bearing time of at most so much in all (s), in the order in which they are to be repeated: its start,
+    the jumps of its loads and speeds, and evenly spread ones.
+    """
+    begin, end = run.whole.begin, run.whole.until
+    speed = float(np.abs(run.first.turning_speed).mean())
+    turn = 2.0 * math.pi / speed if speed > 0.0 else run.length / STRATA
+    length = min(max(turn, 2.0 * LEFT_OUT), most if len(run.parts) > 1 else most / 3.0, run.length)
+    yield _piece(run, begin, begin, begin + length)
+    if len(run.parts) > 1:
+        return
+    for first, last in _jumps(run):
+        yield _piece(run, first - LEFT_OUT, first - LEFT_OUT, last + AFTER_JUMP * turn)
+    lead = min(LEFT_OUT, 0.5 * length)
+    starts = np.linspace(run.window, end - length - lead, STRATA)
+    for start in map(float, starts[[0, 4, 2, 6, 1, 5, 3, 7]]):
+        if begin < start < end - length:
+            yield _piece(run, start, start + lead, start + lead + length)
+
+
+def _piece(run: Repeating, begin: float, since: float, until: float) -> Piece:
+    """A piece that begins at a record; it keeps its length where the record lies before."""
+    record = max(int(np.searchsorted(run.time, begin, "right")) - 1, 0)
+    first = float(run.time[record])
+    return Piece(record, first, first + since - begin, min(max(first + until - begin, first), run.whole.until))
+
+
+def _jumps(run: Repeating) -> list[tuple[float, float]]:
+    """First and last instant of each change of a load or a speed that does not repeat (s); knots close together are one."""
+    given = run.first.scene.quantities().values()
+    knots = np.unique(np.concatenate([[], *(q.times for q in given if isinstance(q, History) and not q.repeats)]))
+    knots = knots[(knots > run.whole.begin) & (knots < run.whole.until)]
+    chains = np.split(knots, np.flatnonzero(np.diff(knots) > 2.0 * LEFT_OUT) + 1)
+    return [(float(chain[0]), float(chain[-1])) for chain in chains if chain.size]
+
+
+def tighter(options: RunOptions) -> dict[str, Any]:
+    """Options of a repetition that is right: tolerances of 'reference', or a tenth of smaller ones, and every force exact."""
+    own, reference = options.tolerances.model_dump(), ACCURACY["reference"].model_dump()
+    finest = all(own[name] < 2.0 * value for name, value in reference.items())
+    values = {name: FINER * own[name] if finest else min(own[name], value) for name, value in reference.items()}
+    return {"accuracy": "reference", "rings_share": 0.0, "impact_share": None, "integrator": "bdf", **values}
