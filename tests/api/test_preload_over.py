@@ -146,9 +146,82 @@ def test_a_balance_that_runs_away(monkeypatch: pytest.MonkeyPatch) -> None:
     assert len(found.rows) == 2
     assert found.runs_away_c == pytest.approx(edge, abs=1.0)
     assert 0.0 < found.rows[0].feedback < found.rows[1].feedback < 1.0
+    assert [one.why for one in found.without] == ["runs away"] * 2
+    assert all(one.feedback >= 1.0 for one in found.without)
     assert "runs away" in str(found)
-    with pytest.raises(trb.TrbError, match="that has a balance"):
+    with pytest.raises(trb.TrbError, match="runs away: one watt of loss makes"):
         trb.preload_over(trb.cases.scene_nj210(), CYLINDER, [edge + 20.0], paths=PATHS)
+
+
+def test_losses_of_the_row_before_do_not_decide(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Losses that fall from 100 K/R to 10 K/R: with those of the row before parts would be hotter than 180 C at 100 C outside;
+    from cold there is the balance t = T + R P(t).
+    """
+    r = resistance()
+    losses_by_film(monkeypatch, lambda t: (100.0 if t < 100.0 else max(100.0 - 9.0 * (t - 100.0), 10.0)) / r)
+    found = trb.preload_over(trb.cases.scene_nj210(), CYLINDER, [0.0, 105.0], paths=PATHS)
+    assert not found.without
+    assert module._film(found.rows[0].temperatures[""]) == pytest.approx(100.0, abs=0.2)
+    assert module._film(found.rows[1].temperatures[""]) == pytest.approx(115.0, abs=0.2)
+
+
+def test_parts_that_are_too_hot_do_not_run_away(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Constant losses that would need 300 C: the feedback is 0, so that nothing runs away."""
+    r = resistance()
+    losses_by_film(monkeypatch, lambda t: 280.0 / r)
+    with pytest.raises(trb.TrbError, match=r"20 C, too hot: parts become hotter than 180 C"):
+        trb.preload_over(trb.cases.scene_nj210(), CYLINDER, [20.0], paths=PATHS)
+
+
+def test_an_error_of_the_machine_is_not_a_missing_balance(monkeypatch: pytest.MonkeyPatch) -> None:
+    def law(t: float) -> float:
+        raise RuntimeError("a step failed")
+
+    losses_by_film(monkeypatch, lambda t: 1.0 if t <= 21.0 else law(t))
+    with pytest.raises(RuntimeError, match="a step failed"):
+        trb.preload_over(trb.cases.scene_nj210(), CYLINDER, [20.9], paths=PATHS)
+
+
+def test_a_play_that_opens_is_no_preload_that_runs_away() -> None:
+    """Aluminium and no load on the shaft: heat opens the play (-4.7 um at 0 C outside, 4.1 um at 20 C with cold parts)."""
+    idle = pair(loads=[], gravity=(0.0, 0.0, 0.0))
+    paths = trb.HeatPaths.reference(bore=0.050, outside=0.110, width=0.02925)
+    found = trb.preload_over(idle, ALUMINIUM, [0.0, 20.0], paths=paths)
+    assert found.runs_away_c is None
+    assert [one.why for one in found.without] == ["nothing holds the shaft"]
+    assert found.rows[0].plays["end play"] == pytest.approx(-4.7e-6, abs=0.3e-6)
+    assert "heat opens the play" in str(found)
+    assert "heat makes preload" not in str(found)
+
+
+def spindle(speed_rpm: float, arrangement: str, spread: float) -> trb.Assembly:
+    """That of docs/howto/spindle.md."""
+    shaft = trb.Shaft.hollow_cylinder(mass=12.0, inner_diameter=0.02, outer_diameter=0.05, length=0.45)
+    tool = trb.ShaftLoad(position=-0.2, force=(300.0, -500.0, 800.0))
+    made: dict[str, Any] = {"end_play": -10e-6, "shaft": shaft, "speed_rpm": speed_rpm, "loads": [tool]}
+    return trb.Assembly.pair(trb.cases.rig_30310(), arrangement, spread=spread, lubricant="vg32", **made)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("speed_rpm", "arrangement", "spread", "outside"),
+    [(6000.0, "back to back", 0.30, [20.0, 40.0]), (3000.0, "face to face", 0.24, [20.0])],
+)
+def test_the_spindle_has_a_balance(speed_rpm: float, arrangement: str, spread: float, outside: list[float]) -> None:
+    """Each row gives off what it loses, and losing 2 % more would not last; at 3000 rpm each bearing has 0.34 mm of preload."""
+    seat = trb.Mounting(**{**SEAT, "shaft": "k5", "housing": "JS6", "accuracy": "5", "shaft_bore": 0.020})
+    hot = {"outer_ring_to_surroundings": 30.0, "inner_ring_to_surroundings": 0.3, "outer_ring_to_rollers": 3.0}
+    paths = trb.HeatPaths(**hot, outer_ring_to_oil=1.0)
+    found = trb.preload_over(spindle(speed_rpm, arrangement, spread), seat, outside, paths=paths)
+    assert [row.temperature_c for row in found.rows] == outside
+    assert found.runs_away_c is None
+    for row in found.rows:
+        parts = row.temperatures.values()
+        given = sum(
+            30.0 * (p.outer_ring_c - row.temperature_c) + 0.3 * (p.inner_ring_c - row.temperature_c) for p in parts
+        )
+        assert given == pytest.approx(row.torque * speed_rpm * math.pi / 30.0, rel=3e-3)
+        assert -1.0 < row.feedback < 0.5
 
 
 def test_the_balance_of_a_pair_gives_off_what_it_loses() -> None:

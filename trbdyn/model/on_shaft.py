@@ -19,8 +19,10 @@ from trbdyn.model.motion import Quantity
 from trbdyn.model.ring_body import Housing, Revolved
 from trbdyn.model.start import Start
 
+MAX_PRELOAD: Final = 1e-3
+"""Largest preload of one bearing by displacement (m), far above what raceways bear."""
 MAX_END_PLAY: Final = 3e-4
-"""Largest end play or preload of one bearing by displacement (m): where a shaft goes farther, the rollers of the other bearing
+"""Largest end play of one bearing (m): where a shaft goes farther, the rollers of the other bearing
 have no equilibrium in the wide gap."""
 
 
@@ -208,7 +210,7 @@ class ShaftBearing(Model):
     bearing: Bearing
     position: Annotated[Number, unit("m", ge=-100.0, le=100.0)]
     small_ends: Literal["left", "right"]
-    end_play: Annotated[Number, unit("m", ge=-MAX_END_PLAY, le=MAX_END_PLAY)] = 0.0
+    end_play: Annotated[Number, unit("m", ge=-MAX_PRELOAD, le=MAX_END_PLAY)] = 0.0
     spring: PreloadSpring | None = None
     name: str = ""
     lubricant: AnyLubricant = vg100()

@@ -28,26 +28,15 @@ from trbdyn.statics.assembly import equilibrium, stiffness
 from trbdyn.statics.fit import WAY, Fit, fit
 from trbdyn.study.answer import Answer
 from trbdyn.study.definition import Base
-from trbdyn.study.heat_network import film_temperature, heat_of, network
-from trbdyn.study.thermal import HOTTEST, own_paths
+from trbdyn.study.heat_network import film_temperature
+from trbdyn.study.thermal import own_paths
+from trbdyn.study.warm_balance import Balanced, NoBalance, WarmBalance
 
 Array = NDArray[np.float64]
 Given = float | Temperatures | Mapping[str, Temperatures]
-Nodes = list[dict[str, float]]
-"""Temperatures of the parts of each bearing (C)."""
 
 USUAL: Final = tuple(float(t) for t in range(-40, 151, 10))
 """Temperatures that are computed where none are given (C)."""
-CLOSE: Final = 1e-3
-"""Share of the largest loss of a bearing up to which losses and network agree."""
-NUDGE: Final = 0.02
-"""Share by which losses are changed to see what they do to themselves."""
-STEPS: Final = 12
-"""Most steps of Newton's method at one temperature outside."""
-WARMING: Final = 40
-"""Most steps from no loss to the balance at the first temperature outside."""
-SMALLEST: Final = 1e-3
-"""Smallest part of a step."""
 EDGE: Final = 0.5
 """How closely the temperature outside is found from which on there is no balance (K)."""
 
@@ -108,12 +97,13 @@ class PreloadOver(Answer):
     Attributes
     ----------
     rows : tuple of AtTemperature
-        At each temperature, in the order given.
+        At each temperature, in the order given; with heat paths at each that has a balance.
     lost : dict of str to tuple of float
         By the name of a play, temperatures at which it becomes positive or negative in the mean (C): where the preload is lost,
         or comes.
     runs_away_c : float or None
-        Temperature outside from which on losses and cooling have no balance (C); None where there is one at all of them.
+        Temperature outside from which on heat and preload drive each other up (C), as one watt of loss makes one watt or more in
+        addition; None where they do so at none of them, or at all.
     torque_rises : tuple of float
         Temperatures (C) at which the torque rises with the temperature, as more preload costs more than thinner oil saves: only
         there heat can drive itself up.
@@ -121,6 +111,8 @@ class PreloadOver(Answer):
         Whether temperatures are those outside, with heat paths, and not those of the parts.
     title : str
         What it is of.
+    without : tuple of NoBalance
+        With heat paths, each temperature outside that has no stable balance, with the reason.
     """
 
     rows: tuple[AtTemperature, ...]
@@ -129,6 +121,7 @@ class PreloadOver(Answer):
     torque_rises: tuple[float, ...]
     outside: bool
     title: str
+    without: tuple[NoBalance, ...] = ()
 
     def _draw(self) -> Any:
         from trbdyn.plot.preload import draw_preload_over
@@ -148,17 +141,17 @@ class PreloadOver(Answer):
             said.append(
                 f"the preload runs away at {self.runs_away_c:.4g} C outside: heat makes preload, and preload heat"
             )
-        elif self.outside:
+        if self.outside:
             worst = max(
                 (row for row in self.rows if row.feedback is not None),
                 key=lambda row: row.feedback or 0.0,
                 default=None,
             )
             if worst is not None:
-                said.append(
-                    f"losses and cooling have a stable balance; at worst a watt of loss makes {worst.feedback:+.2g} W more "
-                    f"({worst.temperature_c:.4g} C)"
-                )
+                where = f" at {', '.join(f'{row.temperature_c:.4g}' for row in self.rows)} C" if self.without else ""
+                more = f"at worst a watt of loss makes {worst.feedback:+.2g} W more ({worst.temperature_c:.4g} C)"
+                said.append(f"losses and cooling have a stable balance{where}; {more}")
+        said += [f"no balance at {one.temperature_c:.4g} C outside, {one.why}: {one.said}" for one in self.without]
         if self.torque_rises:
             low, high = min(self.torque_rises), max(self.torque_rises)
             said.append(f"the torque rises with the temperature from {low:.4g} to {high:.4g} C")
@@ -231,8 +224,9 @@ def preload_over(
         flows in. Else temperatures of the parts, of each bearing by its name or for all; `Temperatures.of_nodes` takes those of
         `trbdyn.thermal`.
     paths : HeatPaths, or mapping of str to HeatPaths, optional
-        With them the parts' temperatures are those at which bearings give off the heat that they make, and it is told where there
-        are none: where heat makes preload and preload heat without end.
+        With them the parts' temperatures are those at which bearings give off the heat that they make. Where there are none, the
+        reason is told: heat and preload drive each other up, parts become too hot, the play opens and nothing holds the shaft, or
+        play or oil leave the range that can be computed.
     **oil
         Cleanliness and others of `trbdyn.rating`.
 
@@ -245,6 +239,8 @@ def preload_over(
     ------
     InputError
         If an argument cannot be used.
+    TrbError
+        If no temperature outside has a stable balance.
 
     Notes
     -----
@@ -274,10 +270,56 @@ def preload_over(
     if paths is None:
         rows = [warm.row(*warm.given(k, one)) for k, one in enumerate(temperatures)]
         return PreloadOver(tuple(rows), warm.lost(rows), None, _rising(rows), False, subject.title)
-    balance = _Balance(warm, own_paths(subject, paths))
+    ribs = [part.bearing.ribs for part in subject.parts.values()]
+    balance = WarmBalance(subject.names, lambda own: warm.losses(warm.at(own)[1]), own_paths(subject, paths), ribs)
     outside = [number_of(f"temperatures[{k}]", one) for k, one in enumerate(temperatures)]
-    rows, runs_away = balance.rows(outside)
-    return PreloadOver(tuple(rows), warm.lost(rows), runs_away, _rising(rows), True, subject.title)
+    found = _at_each(balance, outside)
+    without = tuple(one for one in found if isinstance(one, NoBalance))
+    rows = [
+        warm.row(t, balance.temperatures(one.nodes), one.feedback)
+        for t, one in zip(outside, found, strict=True)
+        if isinstance(one, Balanced)
+    ]
+    if not rows:
+        said = "; ".join(f"{one.temperature_c:g} C, {one.why}: {one.said}" for one in without)
+        raise TrbError(f"losses and cooling have no stable balance at any of these temperatures outside: {said}")
+    runs_away = _edge(balance, outside, found)
+    return PreloadOver(tuple(rows), warm.lost(rows), runs_away, _rising(rows), True, subject.title, without)
+
+
+def _at_each(balance: WarmBalance, outside: Sequence[float]) -> list[Balanced | NoBalance]:
+    """The balance at each temperature outside: from that of the row before, from cold, and where both lead to none from that of
+    the row behind.
+    """
+    found: list[Balanced | NoBalance] = []
+    for temperature in outside:
+        before = found[-1].power if found and isinstance(found[-1], Balanced) else None
+        found.append(balance.find(temperature, before))
+    for k in range(len(outside) - 2, -1, -1):
+        behind = found[k + 1]
+        if isinstance(found[k], NoBalance) and isinstance(behind, Balanced):
+            again = balance.find(outside[k], behind.power)
+            found[k] = again if isinstance(again, Balanced) else found[k]
+    return found
+
+
+def _edge(balance: WarmBalance, outside: Sequence[float], found: Sequence[Balanced | NoBalance]) -> float | None:
+    """The temperature outside between one with a balance and one at which heat runs away (C); None where there are no such two
+    beside each other, or what lies between them ends in another way.
+    """
+    for (good, one), (bad, other) in pairwise(zip(outside, found, strict=True)):
+        if not isinstance(one, Balanced) or not isinstance(other, NoBalance) or other.why != "runs away":
+            continue
+        while abs(bad - good) > EDGE:
+            middle = 0.5 * (good + bad)
+            between = balance.find(middle, one.power)
+            if isinstance(between, Balanced):
+                good, one = middle, between
+            else:
+                bad, other = middle, between
+        if other.why == "runs away":
+            return 0.5 * (good + bad)
+    return None
 
 
 class _Warm:
@@ -363,135 +405,6 @@ class _Warm:
             return fit(self.subject, self.mounting, temperatures=own).plays[name]["operating"].mean
 
         return play
-
-
-class _Balance:
-    """Losses of all bearings and the temperatures that they make, outside of which it has one temperature.
-
-    Unknowns are the losses of each bearing; how they are split between mechanisms follows from the last look at them.
-    """
-
-    def __init__(self, warm: _Warm, paths: list[HeatPaths]) -> None:
-        self.warm, self.paths = warm, paths
-        self.ribs = [part.bearing.ribs for part in warm.subject.parts.values()]
-        self.shares: list[dict[str, float]] = []
-
-    def nodes(self, power: Array, outside: float) -> Nodes:
-        """Temperatures of the parts of each bearing that has these losses (W)."""
-        found = []
-        for watts, share, paths, ribs in zip(power, self.shares, self.paths, self.ribs, strict=True):
-            own = paths.replace(housing_air_c=outside, shaft_end_c=outside, oil_inlet_c=outside)
-            found.append(network(own, heat_of({key: watts * s for key, s in share.items()}, own.oil_share, ribs)))
-        return found
-
-    def temperatures(self, nodes: Nodes) -> dict[str, Temperatures]:
-        return {name: Temperatures.of_nodes(one) for name, one in zip(self.warm.subject.names, nodes, strict=True)}
-
-    def lost(self, power: Array, outside: float, *, look: bool = False) -> Array:
-        """Losses of each bearing (W) at the temperatures that losses make; an error where nothing holds the shaft there, or
-        parts are hotter than is looked for.
-        """
-        nodes = self.nodes(power, outside)
-        if max(max(one.values()) for one in nodes) > HOTTEST:
-            raise TrbError(f"parts become hotter than {HOTTEST:g} C")
-        losses = self.warm.losses(self.warm.at(self.temperatures(nodes))[1])
-        if look:
-            self.shares = [_shares(one) for one in losses]
-        return np.array([sum(one.values()) for one in losses])
-
-    def rows(self, outside: Sequence[float]) -> tuple[list[AtTemperature], float | None]:
-        """A row at each temperature outside that has a balance, and where there is none any more (C)."""
-        rows: list[AtTemperature] = []
-        power: Array | None = None
-        for temperature in outside:
-            found = self.balanced(temperature, power)
-            if found is None:
-                if not rows:
-                    raise TrbError(
-                        f"losses and cooling have no balance at {temperature:g} C outside: the conductances are too small, or "
-                        "the preload runs away there already; begin with a temperature that has a balance"
-                    )
-                return rows, self._edge(rows[-1].temperature_c, temperature, power)
-            power, feedback = found
-            rows.append(self.warm.row(temperature, self.temperatures(self.nodes(power, temperature)), feedback))
-        return rows, None
-
-    def _edge(self, good: float, bad: float, power: Array | None) -> float:
-        """The temperature outside between one with a balance and one without from which on there is none (C)."""
-        while abs(bad - good) > EDGE:
-            middle = 0.5 * (good + bad)
-            found = self.balanced(middle, power)
-            if found is None:
-                bad = middle
-            else:
-                good, (power, _) = middle, found
-        return 0.5 * (good + bad)
-
-    def balanced(self, outside: float, power: Array | None) -> tuple[Array, float] | None:
-        """Losses (W) that are in balance, and what one watt of them makes in addition; None where there are none, or where they
-        would not stay.
-        """
-        try:
-            return self._newton(outside, self._warmed(outside) if power is None else power)
-        except TrbError:
-            return None
-
-    def _warmed(self, outside: float) -> Array:
-        """Close to the balance, from no losses on: each step goes a part of the way, as a machine warms up, and a smaller one
-        where it went too far.
-        """
-        names = self.warm.subject.names
-        cold = self.warm.losses(self.warm.at({name: Temperatures.uniform(outside) for name in names})[1])
-        self.shares = [_shares(one) for one in cold]
-        power, change, share = np.zeros(len(cold)), np.array([sum(one.values()) for one in cold]), 0.3
-        for _ in range(WARMING):
-            further = self._step(power, share * change, outside)
-            if further is None or np.min(further[1] * change) < -0.25 * np.max(change**2):
-                share *= 0.3
-                if share < SMALLEST:
-                    break
-                continue
-            power, change = further
-            if np.max(np.abs(change)) < 0.1 * np.max(power):
-                return power
-        raise TrbError("losses make temperatures, and temperatures losses, without an end")
-
-    def _step(self, power: Array, step: Array, outside: float) -> tuple[Array, Array] | None:
-        """Losses after a step, and how far they are from those that they make; None where the step leads too far."""
-        try:
-            return power + step, self.lost(power + step, outside, look=True) - power - step
-        except TrbError:
-            return None
-
-    def _newton(self, outside: float, power: Array) -> tuple[Array, float] | None:
-        now = self.lost(power, outside, look=True)
-        for _ in range(STEPS):
-            slopes = self._slopes(power, now, outside)
-            if np.max(np.abs(now - power)) < CLOSE * np.max(np.abs(power)):
-                feedback = float(np.max(np.linalg.eigvals(slopes).real))
-                return (power, feedback) if feedback < 1.0 else None
-            step = np.asarray(np.linalg.solve(np.eye(power.size) - slopes, now - power), dtype=np.float64)
-            step *= min(1.0, 0.5 / max(float(np.max(np.abs(step) / np.maximum(power, 1e-9))), 1e-9))
-            while (further := self._step(power, step, outside)) is None:
-                step = np.asarray(0.3 * step)
-                if np.max(np.abs(step)) < SMALLEST * np.max(power):
-                    return None
-            power, now = further[0], further[0] + further[1]
-        return None
-
-    def _slopes(self, power: Array, now: Array, outside: float) -> Array:
-        """Slopes of the losses at the temperatures that losses make, with these losses."""
-        columns = []
-        for k, watts in enumerate(power):
-            nudged = power.copy()
-            nudged[k] = watts + NUDGE * max(watts, 1e-6)
-            columns.append((self.lost(nudged, outside) - now) / (nudged[k] - watts))
-        return np.array(columns).T
-
-
-def _shares(losses: Mapping[str, float]) -> dict[str, float]:
-    total = sum(losses.values())
-    return {name: value / total for name, value in losses.items()} if total > 0.0 else dict.fromkeys(losses, 0.0)
 
 
 def _film(one: Temperatures) -> float:

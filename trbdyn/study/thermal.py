@@ -27,6 +27,7 @@ from trbdyn.study.definition import Base, Case
 from trbdyn.study.heat_network import LossCurves, film_temperature, heat_of, network, rise
 from trbdyn.study.runner import Running
 from trbdyn.study.settled import JUDGED, TURNS, run_until_settled, short_run
+from trbdyn.study.warm_balance import HOTTEST
 
 if TYPE_CHECKING:
     import xarray
@@ -39,8 +40,6 @@ Losses = dict[str, float]
 
 CLOSE: Final = 2e-3
 """How near the film's temperature of network and run are in the end (K)."""
-HOTTEST: Final = 180.0
-"""Films hotter than this are not looked for (C)."""
 SETTLED: Final = 0.01
 """Change of the torque that may still come, and share of the power that is not lost, at the end of each run."""
 ROUGH: Final = 0.05
