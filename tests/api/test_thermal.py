@@ -136,7 +136,7 @@ def test_bands_hold_the_value(rig: Thermal) -> None:
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Short runs at few temperatures."""
-    for setting, value in {"CURVE": 3, "TURNS": (1.0,), "SETTLED": 1.0, "CLOSE": 0.1}.items():
+    for setting, value in {"CURVE": 3, "TURNS": (1.0,), "SETTLED": 1.0}.items():
         monkeypatch.setattr(thermal, setting, value)
 
 

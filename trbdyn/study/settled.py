@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import numpy as np
 
+from trbdyn.results import observables
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.result import Result
 from trbdyn.results.summary import mean_loss, shaft_torque
@@ -86,9 +88,11 @@ def short_run(options: RunOptions, speed_rpm: float, turns: float) -> RunOptions
 def drift(result: Result | AssemblyResult) -> float:
     """How far the torque at the end of a run may still be from where it settles, over that torque (1).
 
-    From the means over the last three quarters of the run: a change that shrinks from quarter to quarter by a steady factor
-    goes on so. A factor above 0.9 counts as 0.9, as a mean that only scatters has any. Of several bearings the largest, by the
-    power that each loses: the shaft's work is known of all together only, and the mean of few records of a torque scatters.
+    Of runs whose last half holds several turns of the cage: two standard errors of the mean over these turns, and what their
+    rate makes of it in that time, where it stands out of their scatter. Of shorter ones from the means over the last three
+    quarters of the run: a change that shrinks from quarter to quarter by a steady factor goes on so, at most with a factor of
+    0.9; one that turns round is scatter and counts as it is. Of several bearings the largest, by the power that each loses: the
+    shaft's work is known of all together only, and the mean of few records of a torque scatters.
     """
     if len(result.parts) == 1:
         return _drift(result.parts[0], shaft_torque)
@@ -96,14 +100,28 @@ def drift(result: Result | AssemblyResult) -> float:
 
 
 def _drift(result: Result, mean: Callable[[Result], float]) -> float:
+    time = result["time"]
+    half = 0.5 * (time[0] + time[-1])
+    turns = int(abs(np.mean(result.rolling_orbit)) * (time[-1] - half) / (2.0 * np.pi))
+    if turns >= observables.LEAST_BLOCKS:
+        edges = np.searchsorted(time, np.linspace(half, time[-1], turns + 1) - 1e-12)
+        values = np.array([mean(result.window(time[a], time[b])) for a, b in pairwise(edges.tolist())])
+        middles = 0.5 * (time[edges[1:]] + time[edges[:-1]])
+        return observables.mean_unknown(middles, values) / max(abs(float(values.mean())), 1e-300)
+    return _by_quarters(result, mean)
+
+
+def _by_quarters(result: Result, mean: Callable[[Result], float]) -> float:
     start, end = result["time"][0], result["time"][-1]
     cuts = [start + share * (end - start) for share in (0.25, 0.5, 0.75)]
     # means from each cut to the end, and from them those of the quarters
     third, half, quarter = (mean(result.window(cut)) for cut in cuts)
     quarters = (3.0 * third - 2.0 * half, 2.0 * half - quarter, quarter)
-    before, last = abs(quarters[1] - quarters[0]), abs(quarters[2] - quarters[1])
-    shrinking = min(last / before, STEADY) if before > 0.0 else 0.0
-    return float(last / (1.0 - shrinking) / max(abs(quarter), 1e-300))
+    before, last = quarters[1] - quarters[0], quarters[2] - quarters[1]
+    if before * last < 0.0:
+        return float(max(abs(before), abs(last)) / max(abs(quarter), 1e-300))
+    shrinking = min(last / before, STEADY) if before != 0.0 else 0.0
+    return float(abs(last) / (1.0 - shrinking) / max(abs(quarter), 1e-300))
 
 
 def stored(result: Result | AssemblyResult) -> float:

@@ -21,6 +21,7 @@ from trbdyn.model.heat import CONDUCTANCES, FACTOR, PARTS, HeatPaths
 from trbdyn.model.lubricants import LOWEST_MEASURED_C, LOWEST_TEMPERATURE_C
 from trbdyn.model.motion import is_constant, value_at
 from trbdyn.model.scene import Scene
+from trbdyn.model.start import Start
 from trbdyn.run.options import RunOptions
 from trbdyn.study.answer import Answer
 from trbdyn.study.definition import Base, Case
@@ -38,14 +39,18 @@ Films = tuple[float, ...]
 Losses = dict[str, float]
 """Power by mechanism (W)."""
 
-CLOSE: Final = 2e-3
-"""How near the film's temperature of network and run are in the end (K)."""
+CLOSE: Final = 0.05
+"""How near the film's temperature of network and run are in the end (K), beside what the error of the losses makes."""
+FULL_RUNS: Final = 4
+"""Most full runs."""
+STEP: Final = 30.0
+"""Step in which hotter films are tried (K)."""
 SETTLED: Final = 0.01
-"""Change of the torque that may still come, and share of the power that is not lost, at the end of each run."""
-ROUGH: Final = 0.05
-"""The same for runs that only tell on which side of the balance their temperature lies."""
-CURVE: Final = 7
-"""Temperatures at which losses are computed for the bands."""
+"""Error of the torque, and share of the power that is not lost, from which on a run is long enough."""
+ROUGH: Final = 0.02
+"""The same for runs with a spacer."""
+CURVE: Final = 5
+"""Temperatures at which losses with a spacer are computed, for the search and for the bands each."""
 DRAWS: Final = 512
 """Draws of conductances; each costs nothing but the solution of the network."""
 
@@ -71,11 +76,15 @@ class Thermal(Answer):
     scene : Scene or ShaftBearing
         The scene, or the bearing on its shaft, at these temperatures.
     known : dict of float to dict
-        Power by mechanism (W), by the temperatures of films that were run (C).
+        Power by mechanism (W), by the temperatures of films that were run (C): with the cage at the balance; else with a spacer
+        in its place, times the ratio of both at the balance.
     paths : HeatPaths
         The network.
     title : str
         What it is the balance of, in words.
+    power_error : float
+        How far the power of the run may be off, over the power: two standard errors of its mean over turns of the cage, or what
+        may still come (1).
     """
 
     temperatures: dict[str, float]
@@ -87,6 +96,7 @@ class Thermal(Answer):
     known: dict[float, dict[str, float]]
     paths: HeatPaths
     title: str
+    power_error: float = 0.0
 
     @property
     def power(self) -> float:
@@ -142,7 +152,8 @@ class Thermal(Answer):
         rows.append(("power that is lost", f"{self.power:.4g} W", f"{low:.3g} to {high:.3g} W", ""))
         note = (
             f"Heat that leaves is {100.0 * self.balance:+.2g} % off the power that is lost; {len(self.known)} temperatures "
-            "were run."
+            f"were run. The power of the run is known within {100.0 * self.power_error:.2g} %"
+            + ("." if self.power_error <= SETTLED else f", after {TURNS[-1]:g} turns; the bands have it in them.")
         )
         return Shown(
             f"Thermal balance: {self.title}",
@@ -222,10 +233,11 @@ def thermal(
 ) -> Thermal | AssemblyThermal:
     """The temperatures at which a bearing, or each bearing on a shaft, gives off as much heat as it makes.
 
-    Losses come from runs, each until they have settled as in `trbdyn.torque_map`; heat goes through a network of four nodes. The
-    temperature of films, the mean of rings and rollers, is the oil's in the run; where the scene has a `Growth`, its parts
-    get the temperatures of the nodes, which change the plays of the pockets. The films' temperature is found by bracketing, as
-    plain iteration of run and network can swing. Bearings on a shaft run together, each at the temperature of its own films.
+    Losses come from runs, each until they are known within 1 % as in `trbdyn.torque_map`, or over 32 turns: then their error is
+    told, and the bands have it in them. Heat goes through a network of four nodes. The temperature of films, the mean of rings
+    and rollers, is the oil's in the run; where the scene has a `Growth`, its parts get those of the nodes, which change
+    the plays of the pockets. The films' temperature is bracketed with runs in which a spacer stands for the cage, and found with
+    full runs. Bearings on a shaft run together, each at the temperature of its own films.
 
     Parameters
     ----------
@@ -251,7 +263,7 @@ def thermal(
     InputError
         If an argument cannot be used, or films would be hotter than 180 C.
     TrbError
-        If a run fails, or its losses have not settled after 32 turns.
+        If a run fails.
 
     Notes
     -----
@@ -278,7 +290,7 @@ def thermal(
     balance = _Balance(subject, own, RunOptions(accuracy="fast") if options is None else options, how)
     films = balance.found()
     losses, nodes = balance.losses(films), balance.nodes
-    bands, at = balance.bands(films, seed), balance.subject_at(films)
+    bands, at = balance.bands(films, seed), balance.subject_at(tuple(map(film_temperature, nodes)))
     found = {}
     for k, (name, part) in enumerate(zip(subject.names, _parts(at), strict=True)):
         flows = {end: g * (nodes[k][end] - outside) for end, (g, outside) in own[k].outer_links.items()}
@@ -291,9 +303,10 @@ def thermal(
             flows,
             residual,
             part,
-            balance.curve(k),
+            balance.curve(k, films),
             own[k],
             title,
+            balance.off[films],
         )
     return found[""] if "" in found else AssemblyThermal(found)
 
@@ -317,9 +330,11 @@ def own_paths(subject: Subject, paths: HeatPaths | Mapping[str, HeatPaths]) -> l
 
 @dataclass
 class _Balance:
-    """Losses of bearings at temperatures of their films, and the temperatures at which they balance. `known` holds settled
-    losses of each bearing by the films' temperatures, `rough` those that are good enough to tell on which side of the balance
-    they lie.
+    """Losses of bearings at temperatures of their films, and the temperatures at which they balance.
+
+    `cheap` holds losses of runs in which a spacer stands for the cage, which cost a tenth, by the films' temperatures; `known`
+    those of the runs themselves, and `off` how far these may be off (1). Between them losses are those of the cheap runs, times
+    the ratio that was found at the temperature of the last full run.
     """
 
     subject: Subject
@@ -327,39 +342,75 @@ class _Balance:
     options: RunOptions
     how: Running
     known: dict[Films, list[Losses]] = field(default_factory=dict)
-    rough: dict[Films, list[Losses]] = field(default_factory=dict)
+    off: dict[Films, float] = field(default_factory=dict)
+    cheap: dict[Films, list[Losses]] = field(default_factory=dict)
     nodes: list[dict[str, float]] = field(default_factory=list)  # of each bearing (C), from the last losses
 
     def found(self) -> Films:
-        """Temperatures of the films at which each network gives off what its bearing makes. Each is bracketed, all at the same
-        time, as one run gives the losses of all bearings; by false position, with the older end's residual halved (Illinois:
-        Dowell and Jarratt 1971, BIT 11, 168).
+        """Temperatures of the films at which each network gives off what its bearing makes: bracketed with cheap runs, all
+        bearings at the same time, and found with full runs at the temperature that the last one leads to.
         """
-        coldest = [self.coldest(k) for k in range(len(self.paths))]
-        low, high = np.array(coldest), np.minimum(np.array(coldest) + 30.0, HOTTEST)
-        at_low = self._excess(low, self.losses)
-        for k in np.flatnonzero(at_low <= 0.0):
-            raise InputError.of("paths", low[k], "temperatures outside lie below what the oil is known at (C)")
-        at_high = self._excess(high, self.roughly)
-        while (hotter := at_high > 0.0).any():
+        cold = np.array([self.coldest(k) for k in range(len(self.paths))])
+        ratios: list[Losses] = [{} for _ in self.paths]
+        for k in np.flatnonzero(self._excess(cold, ratios) <= 0.0):
+            raise InputError.of("paths", cold[k], "temperatures outside lie below what the oil is known at (C)")
+        high = np.minimum(cold + STEP, HOTTEST)
+        for _ in range(FULL_RUNS):
+            high = self._bracket(high, ratios)
+            self._grid(cold, high)
+            film = np.array([self._root(k, one, cold[k], high[k]) for k, one in enumerate(ratios)])
+            at = tuple(film.tolist())
+            losses = self.losses(at)
+            self.nodes = self._nodes(losses)
+            away = np.abs(np.array([film_temperature(nodes) for nodes in self.nodes]) - film)
+            if (away <= CLOSE + self.off[at] * (film - cold)).all():
+                return at
+            ratios = [_ratios(full, LossCurves(self._cheap(k))(film[k])) for k, full in enumerate(losses)]
+        self.off[at] += float(np.max(away / (film - cold)))
+        return at
+
+    def _bracket(self, high: Array, ratios: Sequence[Losses]) -> Array:
+        """Films (C) so hot that no bearing makes as much heat as it gives off there."""
+        while (hotter := self._excess(high, ratios) > 0.0).any():
             if (high[hotter] >= HOTTEST).any():
                 limit = (
                     f"would make films hotter than {HOTTEST:g} C: the conductances are too small for these losses (W/K)"
                 )
                 raise InputError.of("paths", "conductances", limit)
-            low, at_low = np.where(hotter, high, low), np.where(hotter, at_high, at_low)
-            high = np.where(hotter, np.minimum(high + 30.0, HOTTEST), high)
-            at_high = np.where(hotter, self._excess(high, self.roughly), at_high)
-        film, off, before = high, at_high, np.zeros(len(high))
-        while (goes_on := (np.abs(off) > CLOSE) & (high - low > CLOSE)).any():
-            film = np.where(goes_on, (low * at_high - high * at_low) / (at_high - at_low), film)
-            off = self._excess(film, self.roughly)
-            above, side = off > 0.0, np.sign(off)
-            at_high = np.where(above & (side == before), 0.5 * at_high, np.where(above, at_high, off))
-            at_low = np.where(~above & (side == before), 0.5 * at_low, np.where(above, off, at_low))
-            low, high, before = np.where(above, film, low), np.where(above, high, film), side
-        self._excess(film, self.losses)
-        return tuple(map(film_temperature, self.nodes))
+            high = np.where(hotter, np.minimum(high + STEP, HOTTEST), high)
+        return high
+
+    def _grid(self, cold: Array, high: Array) -> None:
+        """Cheap runs at temperatures between, side by side."""
+        grids = zip(
+            *(np.linspace(one, other, CURVE).tolist() for one, other in zip(cold, high, strict=True)), strict=True
+        )
+        self._run([films for films in grids if films not in self.cheap], spacer=True)
+
+    def _root(self, k: int, ratios: Losses, cold: float, high: float) -> float:
+        """The temperature of a bearing's films at which its network gives off what its curve of losses makes (C)."""
+        ribs, curve = _parts(self.subject)[k].bearing.ribs, self._curve(k, ratios)
+
+        def excess(film: float) -> float:
+            return film_temperature(network(self.paths[k], heat_of(curve(film), self.paths[k].oil_share, ribs))) - film
+
+        return float(brentq(excess, cold, high, xtol=1e-4))
+
+    def _curve(self, k: int, ratios: Losses) -> Callable[[float], Losses]:
+        """Losses of a bearing over its films' temperature: those of cheap runs, times ratios."""
+        curves = LossCurves(self._cheap(k))
+        return lambda film: _times(curves(film), ratios)
+
+    def _cheap(self, k: int) -> dict[float, Losses]:
+        return {films[k]: losses[k] for films, losses in self.cheap.items()}
+
+    def curve(self, k: int, films: Films) -> dict[float, Losses]:
+        """Losses of a bearing by its films' temperature: those of the full run where it balances, and of the cheap runs, times
+        the ratio between both there.
+        """
+        ratios = _ratios(self.known[films][k], LossCurves(self._cheap(k))(films[k]))
+        at = self._curve(k, ratios)
+        return {t: at(t) for t in self._cheap(k)} | {films[k]: self.known[films][k]}
 
     def coldest(self, k: int) -> float:
         """Films of a bearing that makes no heat, or the lowest temperature at which its oil is known (C)."""
@@ -367,15 +418,21 @@ class _Balance:
         known = LOWEST_TEMPERATURE_C if oil is not None and oil.vogel is None else LOWEST_MEASURED_C
         return max(film_temperature(network(self.paths[k], dict.fromkeys(PARTS, 0.0))), known)
 
-    def _excess(self, films: Array, losses: Callable[[Films], list[Losses]]) -> Array:
-        """How much hotter the films of each bearing become than they are (K)."""
-        found = losses(tuple(films.tolist()))
+    def _excess(self, films: Array, ratios: Sequence[Losses]) -> Array:
+        """How much hotter the films of each bearing become than they are (K), by the losses of cheap runs, times ratios."""
+        at = tuple(films.tolist())
+        if at not in self.cheap:
+            self._run([at], spacer=True)
+        found = self._nodes([_times(lost, own) for lost, own in zip(self.cheap[at], ratios, strict=True)])
+        return np.array([film_temperature(nodes) for nodes in found]) - films
+
+    def _nodes(self, losses: Sequence[Losses]) -> list[dict[str, float]]:
+        """Temperatures of the parts of each bearing that has these losses."""
         parts = _parts(self.subject)
-        self.nodes = [
+        return [
             network(paths, heat_of(lost, paths.oil_share, part.bearing.ribs))
-            for paths, lost, part in zip(self.paths, found, parts, strict=True)
+            for paths, lost, part in zip(self.paths, losses, parts, strict=True)
         ]
-        return np.array([film_temperature(nodes) for nodes in self.nodes]) - films
 
     def subject_at(self, films: Films, nodes: Sequence[Mapping[str, float]] | None = None) -> Subject:
         """What is run with its films, and the parts that grow, at their temperatures."""
@@ -397,78 +454,109 @@ class _Balance:
         return warm
 
     def losses(self, films: Films) -> list[Losses]:
-        """Settled losses of each bearing."""
+        """Losses of each bearing in full runs."""
         if films not in self.known:
-            self._run([films], self.nodes)
+            self.nodes = self.nodes or self._nodes([LossCurves(self._cheap(k))(t) for k, t in enumerate(films)])
+            self._run([films])
         return self.known[films]
 
-    def roughly(self, films: Films) -> list[Losses]:
-        """The same, good enough to tell on which side of the balance it lies: also where the losses scatter by `ROUGH`."""
-        if films not in self.known and films not in self.rough:
-            self._run([films], self.nodes, ROUGH)
-        return self.known[films] if films in self.known else self.rough[films]
-
-    def curve(self, k: int) -> dict[float, Losses]:
-        """Settled losses of a bearing by its films' temperature."""
-        return {films[k]: losses[k] for films, losses in self.known.items()}
-
-    def _run(self, points: Sequence[Films], nodes: Sequence[Mapping[str, float]], within: float = SETTLED) -> None:
+    def _run(self, points: Sequence[Films], *, spacer: bool = False) -> None:
         speed = value_at(self.subject.speed_rpm, 0.0)
 
         def case(films: Films, turns: float) -> Case:
-            parameters = {f"{prefix}film_c": t for prefix, t in zip(self.subject.parts, films, strict=True)}
-            return Case(parameters, self.subject_at(films, nodes), short_run(self.options, speed, turns))
+            parameters: dict[str, Any] = {
+                f"{prefix}film_c": t for prefix, t in zip(self.subject.parts, films, strict=True)
+            }
+            subject = self.subject_at(films, [] if spacer else self.nodes)
+            if spacer:
+                parameters["spacer"] = True
+                subject = with_spacer(subject)
+            return Case(parameters, subject, short_run(self.options, speed, turns))
 
         def judged(found: xarray.Dataset) -> dict[str, Any]:
             moves = max(float(found["drift"]), float(found["stored"]))
             losses = [_losses(found, f"{name}_" if name else "") for name in self.subject.names]
-            return {"settled": moves <= SETTLED, "moves": moves, "losses": losses}
+            return {"settled": moves <= (ROUGH if spacer else SETTLED), "moves": moves, "losses": losses}
 
         for films, row in run_until_settled(points, TURNS, case, judged, JUDGED, self.how).items():
             said = " and ".join(f"{t:.4g}" for t in films)
             if row["message"]:
                 raise TrbError(f"the run at {said} C failed: {row['message']}")
-            if not row["settled"] and row["moves"] > within:
-                limit = f"have not settled within {100.0 * SETTLED:g} % after {TURNS[-1]:g} turns"
-                raise TrbError(f"the losses at {said} C {limit}")
-            (self.known if row["settled"] else self.rough)[films] = row["losses"]
+            (self.cheap if spacer else self.known)[films] = row["losses"]
+            if not spacer:
+                self.off[films] = row["moves"]
 
     def bands(self, films: Films, seed: int) -> list[dict[str, tuple[float, float]]]:
-        """Bands of temperatures and power of each bearing, with losses between the runs by interpolation."""
-        grids = []
-        for k, paths in enumerate(self.paths):
-            cold = film_temperature(network(paths, dict.fromkeys(PARTS, 0.0)))
-            hot = min(films[k] + 1.2 * (films[k] - cold), HOTTEST)
-            grids.append(np.linspace(self.coldest(k), hot, CURVE).tolist())
-        self._run([point for point in zip(*grids, strict=True) if point not in self.known], [])
+        """Bands of temperatures and power of each bearing."""
+        cold = np.array([self.coldest(k) for k in range(len(self.paths))])
+        self._grid(cold, np.minimum(films + 1.2 * (films - cold), HOTTEST))
         parts = _parts(self.subject)
         return [
-            _drawn(paths, LossCurves(self.curve(k)), part.bearing.ribs, seed)
+            _drawn(paths, LossCurves(self.curve(k, films)), part.bearing.ribs, seed, self.off[films])
             for k, (paths, part) in enumerate(zip(self.paths, parts, strict=True))
         ]
 
 
-def _drawn(paths: HeatPaths, curves: LossCurves, ribs: Any, seed: int) -> dict[str, tuple[float, float]]:
-    """Bands of temperatures and power from draws of all conductances."""
+def with_spacer(subject: Subject) -> Subject:
+    """The subject with a spacer in place of each cage, where it takes one; else as it is."""
+    for prefix, part in subject.parts.items():
+        if not part.effects.has_cage:
+            continue
+        start = part.start if part.start.kind == "state" else Start(time=part.start.time)
+        spaced = part.effects.replace(bodies="rollers_and_spacer")
+        try:
+            subject = subject.with_part(prefix, effects=spaced, start=start)
+        except InputError:  # an elastic cage, or one that a land guides
+            return subject
+    return subject
+
+
+ADDED: Final = "added "
+"""Beginning of the name of a loss that the spacer does not have."""
+
+
+def _ratios(full: Losses, cheap: Losses) -> Losses:
+    """Each loss of a full run over that of a cheap one; where this has none, the loss itself (W), with a name of its own."""
+    return {
+        (name if cheap.get(name, 0.0) > 0.0 else f"{ADDED}{name}"): (
+            value / cheap[name] if cheap.get(name, 0.0) > 0.0 else value
+        )
+        for name, value in full.items()
+    }
+
+
+def _times(losses: Losses, ratios: Losses) -> Losses:
+    """Losses of a cheap run times ratios, and those that it does not have."""
+    added = {name[len(ADDED) :]: value for name, value in ratios.items() if name.startswith(ADDED)}
+    return {name: value * ratios.get(name, 1.0) for name, value in losses.items()} | added
+
+
+def _drawn(paths: HeatPaths, curves: LossCurves, ribs: Any, seed: int, off: float) -> dict[str, tuple[float, float]]:
+    """Bands of temperatures and power from draws of all conductances, and of losses that may be off by a share either way."""
     names = [name for name in CONDUCTANCES if getattr(paths, name) > 0.0]
     known = curves.temperatures
     found: dict[str, list[float]] = {name: [] for name in (*PARTS, "film", "power")}
-    for row in qmc.Sobol(len(names) + 1, seed=seed).random(DRAWS):
+    for row in qmc.Sobol(len(names) + 2, seed=seed).random(DRAWS):
         changes = {name: getattr(paths, name) * FACTOR ** (2.0 * u - 1.0) for name, u in zip(names, row, strict=False)}
-        drawn = paths.replace(**changes, oil_share=float(row[-1]))
+        drawn, factor = paths.replace(**changes, oil_share=float(row[-2])), 1.0 + off * (2.0 * float(row[-1]) - 1.0)
 
-        def nodes_at(t: float, drawn: HeatPaths = drawn) -> dict[str, float]:
-            return network(drawn, heat_of(curves(t), drawn.oil_share, ribs))
+        def losses_at(t: float, factor: float = factor) -> Losses:
+            return {name: factor * value for name, value in curves(t).items()}
 
-        def excess(t: float) -> float:
-            return film_temperature(nodes_at(t)) - t
+        def nodes_at(
+            t: float, drawn: HeatPaths = drawn, losses: Callable[[float], Losses] = losses_at
+        ) -> dict[str, float]:
+            return network(drawn, heat_of(losses(t), drawn.oil_share, ribs))
+
+        def excess(t: float, nodes: Callable[[float], dict[str, float]] = nodes_at) -> float:
+            return film_temperature(nodes(t)) - t
 
         if excess(known[-1]) > 0.0:  # hotter than the runs go: the band ends there
             t = float(known[-1])
         else:
             t = float(brentq(excess, known[0], known[-1], xtol=1e-3)) if excess(known[0]) > 0.0 else float(known[0])
         nodes = nodes_at(t)
-        for name, value in {**nodes, "film": t, "power": sum(curves(t).values())}.items():
+        for name, value in {**nodes, "film": t, "power": sum(losses_at(t).values())}.items():
             found[name].append(value)
     return {name: tuple(np.quantile(values, [0.025, 0.975]).tolist()) for name, values in found.items()}
 

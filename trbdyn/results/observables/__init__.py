@@ -24,11 +24,13 @@ if TYPE_CHECKING:
         whirl_frequency_spectral as whirl_frequency_spectral,
     )
     from trbdyn.results.observables.slow_motion import (
+        LEAST_BLOCKS as LEAST_BLOCKS,
         LIMITS as LIMITS,
         Drift as Drift,
         MotionSettling as MotionSettling,
         by_turns as by_turns,
         drift as drift,
+        mean_unknown as mean_unknown,
         motion_settling as motion_settling,
         whirl_amplitude as whirl_amplitude,
     )

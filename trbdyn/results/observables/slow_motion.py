@@ -216,6 +216,41 @@ def drift(time: ArrayLike, values: ArrayLike) -> Drift:
     return Drift(float(x.mean()), rate, math.sqrt(float(left @ left) / freedom / size), freedom)
 
 
+def mean_unknown(time: ArrayLike, values: ArrayLike) -> float:
+    """How far the mean of a quantity over turns may lie from the mean that a longer record gives.
+
+    Parameters
+    ----------
+    time : array_like, shape (N,)
+        Times of the turns, s.
+    values : array_like, shape (N,)
+        Means of the turns.
+
+    Returns
+    -------
+    float
+        Two standard errors of the mean (Student's for few turns), and, where the rate stands out of the scatter, what it changes
+        within the record; in the unit of the values.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer values than `LEAST_BLOCKS`.
+
+    Examples
+    --------
+    >>> from trbdyn import observables
+    >>> values = [1.01, 0.99, 1.01, 0.99, 1.01, 0.99, 1.01, 0.99]
+    >>> round(observables.mean_unknown(range(8), values), 4)
+    0.0092
+    """
+    t, x = np.asarray(time, dtype=float), np.asarray(values, dtype=float)
+    found = drift(t, x)
+    moves = abs(found.rate) * float(np.ptp(t)) if found.significant else 0.0
+    left = x - x.mean() - (found.rate * (t - t.mean()) if found.significant else 0.0)
+    return _factor(BOUND, x.size - 1) * math.sqrt(float(left @ left) / (x.size - 1) / x.size) + moves
+
+
 def motion_settling(
     time: ArrayLike,
     roller_angle: ArrayLike,
