@@ -21,7 +21,7 @@ RESULTS = (".h5", ".hdf5")
     argument("subject", "a TOML file, the name of a shipped case, or a result file", "CASE"),
     argument("--cleanliness", "particles in the oil (ISO 4406), for instance 17/14", "CODE"),
     argument("--filtered", "circulating oil with an in-line filter", default=None),
-    argument("--reliability", "90, 95, 96, 97, 98 or 99", "PERCENT", type=float, default=90.0),
+    argument("--reliability", "from 90 to 99.95", "PERCENT", type=float, default=90.0),
     argument("--json", "print the numbers as JSON, in SI units and hours"),
     SET,
 )

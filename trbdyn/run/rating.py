@@ -81,7 +81,7 @@ def rating(
     contamination : float, optional
         e_C, in place of the cleanliness: from 0 (very dirty) to 1 (laboratory) (1).
     reliability : float
-        90, 95, 96, 97, 98 or 99 (%).
+        From 90 to 99.95 (%).
 
     Returns
     -------

@@ -20,8 +20,29 @@ MOST_LIFE_FACTOR: Final = 50.0
 SMALLEST_LOAD_SHARE: Final = 0.02
 """Least load of a roller bearing over its C, so that rollers roll: general catalogue of SKF, Frm = 0.02 C."""
 
-RELIABILITY: Final = {90.0: 1.0, 95.0: 0.64, 96.0: 0.55, 97.0: 0.47, 98.0: 0.37, 99.0: 0.25}
+RELIABILITY: Final = {
+    90.0: 1.0,
+    95.0: 0.64,
+    96.0: 0.55,
+    97.0: 0.47,
+    98.0: 0.37,
+    99.0: 0.25,
+    99.2: 0.22,
+    99.4: 0.19,
+    99.6: 0.16,
+    99.8: 0.12,
+    99.9: 0.093,
+    99.92: 0.087,
+    99.94: 0.080,
+    99.95: 0.077,
+}
 """a1 by reliability (%): ISO 281:2007, table 12."""
+SAFE_SHARE: Final = 0.05
+"""Share of L10 within which no bearing fails, C_gamma of the distribution behind that table: ISO/TR 1281-2:2008."""
+CHANGE_OF_SPEED: Final = 1000.0
+"""Speed (rpm) at which the formula of nu1 changes: ISO 281:2007, 9.3.3.3.1."""
+ROUNDING: Final = 1e-9
+"""Share by which a number may miss a limit of the standard by rounding alone."""
 
 _FILTERED: Final = {
     "13/10": (0.0864, 0.5663),
@@ -42,7 +63,29 @@ table 7 of "Selecting bearing size"."""
 
 def equivalent_load(radial_load: float, axial_load: float, *, e: float, Y: float) -> float:
     """P = Fr where Fa/Fr <= e, else 0.4 Fr + Y Fa (N): ISO 281:2007, 7.3, single-row radial roller bearings."""
-    return radial_load if axial_load <= e * radial_load else 0.4 * radial_load + Y * axial_load
+    return radial_load if within_e(radial_load, axial_load, e) else 0.4 * radial_load + Y * axial_load
+
+
+def equivalent_load_of_cylinders(radial_load: float, axial_load: float, *, e: float, Y: float) -> float:
+    """P of a cylindrical bearing whose ribs carry an axial load (N): Fr where Fa/Fr <= e, else 0.92 Fr + Y Fa.
+
+    Notes
+    -----
+    Source: catalogues of makers (SKF, Rolling Bearings, cylindrical roller bearings, equivalent dynamic bearing load), who give
+    e = 0.2 and Y = 0.6 for the series 10, 2, 3 and 4, e = 0.3 and Y = 0.4 for the wider ones. ISO 281 has no such factors.
+
+    Examples
+    --------
+    >>> from trbdyn.standards.iso281 import equivalent_load_of_cylinders
+    >>> equivalent_load_of_cylinders(10e3, 20e3, e=0.2, Y=0.6)
+    21200.0
+    """
+    return radial_load if within_e(radial_load, axial_load, e) else 0.92 * radial_load + Y * axial_load
+
+
+def within_e(radial_load: float, axial_load: float, e: float) -> bool:
+    """Whether Fa/Fr <= e, but for rounding."""
+    return axial_load <= e * radial_load * (1.0 + ROUNDING)
 
 
 def static_equivalent_load(radial_load: float, axial_load: float, *, Y0: float) -> float:
@@ -74,7 +117,8 @@ def reference_viscosity(speed_rpm: float, pitch_diameter: float) -> float:
     speed, pitch = abs(speed_rpm), 1e3 * pitch_diameter
     if speed == 0.0:
         return math.inf
-    factor = 45000.0 * speed**-0.83 if speed < 1000.0 else 4500.0 * speed**-0.5
+    slow = speed < CHANGE_OF_SPEED * (1.0 - ROUNDING)
+    factor = 45000.0 * speed**-0.83 if slow else 4500.0 * speed**-0.5
     return factor * pitch**-0.5
 
 
@@ -128,8 +172,19 @@ def life_factor(viscosity_ratio: float, load_ratio: float) -> float:
 
 
 def reliability_factor(reliability: float) -> float:
-    """a1 for a reliability (%), one of those of the standard's table."""
-    if reliability not in RELIABILITY:
-        allowed = ", ".join(f"{known:g}" for known in RELIABILITY)
-        raise InputError.of("reliability", reliability, f"must be one of {allowed} (%)")
-    return RELIABILITY[reliability]
+    """a1 for a reliability from 90 to 99.95 (%): that of the standard's table, between its rows by the distribution behind it.
+
+    a1 = (1 - C_g) [ln(100/S)/ln(100/90)]^(2/3) + C_g with C_g = 0.05: a distribution of Weibull with slope 1.5 and a life that all
+    bearings reach (ISO/TR 1281-2:2008). It gives the rows of the table within their two digits.
+
+    Examples
+    --------
+    >>> from trbdyn.standards.iso281 import reliability_factor
+    >>> reliability_factor(99.9), round(reliability_factor(99.5), 3)
+    (0.093, 0.175)
+    """
+    least, most = min(RELIABILITY), max(RELIABILITY)
+    if not least <= reliability <= most:
+        raise InputError.of("reliability", reliability, f"must be from {least:g} to {most:g}, table 12 of ISO 281 (%)")
+    share = math.log(100.0 / reliability) / math.log(100.0 / least)
+    return RELIABILITY.get(reliability, (1.0 - SAFE_SHARE) * share ** (2.0 / 3.0) + SAFE_SHARE)

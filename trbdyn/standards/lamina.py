@@ -52,13 +52,23 @@ def contact_ratings(C: float, *, n_rollers: int, roller_diameter: float, pitch_d
 
 
 def stress_concentration(count: int) -> Array:
-    """f of each lamina, shape (count,): 1 - 0.01/ln(1.985 abs(2 k - n_s - 1)/(2 n_s)), k from 1 to n_s.
+    """f of each lamina, shape (count,): 1 - 0.01/ln(1.985 abs(2 k - n_s - 1)/(2 n_s - 2)), k from 1 to n_s, n_s from 2.
 
-    ISO/TS 16281:2008, 4.3.2.
+    It stands for the edge stress that slices without their neighbours do not know: 1 at mid length, and 2.33 in both laminas at
+    the ends, however many there are.
 
-    It stands for the edge stress that slices without their neighbours do not know: 1 at mid length, more towards the ends.
+    Notes
+    -----
+    ISO/TS 16281:2008, 4.3.2; ISO 16281:2025, formula (60). The standard was not at hand: the divisor 2 n_s - 2 is that of two
+    published codes that cite this formula.
+
+    Examples
+    --------
+    >>> from trbdyn.standards.lamina import stress_concentration
+    >>> [round(float(stress_concentration(count)[0]), 2) for count in (30, 50, 100)]
+    [2.33, 2.33, 2.33]
     """
-    place = np.abs(2.0 * np.arange(1, count + 1) - count - 1.0) / (2.0 * count)
+    place = np.abs(2.0 * np.arange(1, count + 1) - count - 1.0) / (2.0 * count - 2.0)
     with np.errstate(divide="ignore"):
         return np.asarray(1.0 - 0.01 / np.log(1.985 * place))
 
