@@ -359,7 +359,7 @@ def test_estimates_are_marked_until_they_are_changed() -> None:
         ({"width": 1.0}, "width = 1.0"),
         ({"width": float("nan")}, "width = nan : must be > 0"),
         ({"e": None}, "e = None : must be given, or Y"),
-        ({"e": 3.0}, "e = 3.0 : must give a contact angle from 7 to 35"),
+        ({"e": 3.0}, "e = 3.0 : must give a contact angle from 5 to 45"),
         ({"n_rollers": 2.5}, "n_rollers = 2.5 : must be a whole number"),
         ({"n_rollers": 2}, "n_rollers = 2 : must be a whole number, from 3 to 200"),
         ({"pitch_diameter": 0.2}, "pitch_diameter = 0.2 : must lie between"),

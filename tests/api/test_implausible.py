@@ -108,7 +108,7 @@ def test_a_result_says_that_its_raceways_would_be_dented() -> None:
 
 def test_a_pure_radial_load_points_to_displacement() -> None:
     with pytest.raises(trb.InputError, match=r"axial_load = 0\.0 : must be > 0.*displacement = \(None, None, -20e-6\)"):
-        trb.Scene(RIG, speed_rpm=1000.0, radial_load=3e3)
+        trb.Simulation(trb.Scene(RIG, speed_rpm=1000.0, radial_load=3e3))
     scene = trb.Scene(RIG, speed_rpm=1000.0, radial_load=3e3, displacement=(None, None, -20e-6))
     assert trb.Simulation(scene).equilibrium.outer_load.max() > 0.0
 

@@ -15,7 +15,7 @@ import pytest
 import trbdyn as trb
 from trbdyn.model.ratings import rating_iso76
 from trbdyn.standards import iso281, lamina
-from trbdyn.standards.sheet import at_equilibrium
+from trbdyn.standards.loading import at_equilibrium
 
 PAGE: dict[str, Any] = {
     "bore": 0.040, "outside": 0.080, "width": 0.02475, "C": 74.8e3, "C0": 86.5e3, "e": 0.37, "Y": 1.6,
@@ -232,7 +232,9 @@ def test_centred_axial_load_is_the_closed_form() -> None:
     with_edges = reference_life(loading.lamina_loads, ratings)
     edges = np.mean(lamina.stress_concentration(lamina.LAMINAS) ** 4.5) ** (1.0 / 4.5)
     assert (with_edges / life) ** -0.25 == pytest.approx(edges, rel=3e-3)
-    assert edges == pytest.approx(1.27, abs=0.005)  # about 1/0.83, the allowance of ISO 281 that the reference life takes out
+    assert edges == pytest.approx(
+        1.27, abs=0.005
+    )  # about 1/0.83, the allowance of ISO 281 that the reference life takes out
 
 
 @pytest.mark.parametrize("count", [30, 50, 100])
@@ -245,8 +247,8 @@ def test_edges_of_a_line_are_2_33_whatever_the_number_of_laminas(count: int) -> 
 
 
 def test_what_edges_make_of_lives() -> None:
-    """30310 at 1000 rpm under 10 and 15 kN with VG 68 and 17/14: 12 805 h, from the formula of the standard by an own code. A straight
-    roller under a load that fills it lives shorter than a profiled one.
+    """30310 at 1000 rpm under 10 and 15 kN with VG 68 and 17/14: 12 805 h, from the formula of the standard by an own code.
+    A straight roller under a load that fills it lives shorter than a profiled one.
     """
     rig = trb.cases.rig_30310()
     loads = {"axial_load": 10e3, "radial_load": 15e3, "lubricant": "vg68"}
@@ -449,3 +451,163 @@ def test_static_safety_by_pressure_and_by_ratings_differ_by_the_share_of_the_hea
     share = math.pi * 2.0 / (np.trapezoid(loads * np.cos(places), places))
     assert share == pytest.approx(4.08, rel=5e-3)
     assert 5.05 / share == pytest.approx(1.24, rel=5e-3)
+
+
+def miner(loads: list[tuple[float, float]], C: float, speed: float) -> float:
+    """Hours of a bearing under loads P (N) with shares of the time, at one speed (rpm)."""
+    damage = sum(share * (load / C) ** (10.0 / 3.0) for load, share in loads)
+    return 1e6 / damage / (60.0 * speed)
+
+
+SPIKE = trb.History.step((0.010, 0.0165), (3000.0, 40_000.0, 3000.0), rise=5e-4)
+"""7 ms at 40 kN of 40 ms at 3 kN, with its edges."""
+
+
+@pytest.fixture(scope="module")
+def spike(tmp_path_factory: pytest.TempPathFactory) -> trb.Result:
+    """A run whose load is largest in its first half, in a file."""
+    scene = trb.Scene(trb.cases.rig_30310(), speed_rpm=2000.0, axial_load=SPIKE, ring="follows", lubricant="vg68")
+    file = tmp_path_factory.mktemp("spike") / "spike.h5"
+    return trb.Simulation(scene).run(duration=0.04, save_groups=["time", "cage", "rollers", "peaks"], output=file)
+
+
+def test_the_life_of_a_run_whose_load_changes_is_that_of_the_whole_run(spike: trb.Result) -> None:
+    """Miner by hand over the table of the load; the same loads by a spectrum. The second half alone says 196 722 h."""
+    found = trb.rating(spike, cleanliness="17/14")
+    times = np.linspace(0.0, 0.04, 8001)
+    loads = SPIKE.value(times)
+    by_hand = miner([(found.Y * load, 1.0 / times.size) for load in loads], found.dynamic_rating, 2000.0)
+    assert found.life_hours == pytest.approx(by_hand, rel=2e-3)
+    assert found.life_hours < 250.0
+    table = trb.series_table(times.tolist(), {"axial_load": loads.tolist()}, classes=12)
+    cases = trb.rating(trb.spectrum(spike.scene.replace(axial_load=3000.0), table), cleanliness="17/14")
+    for name in ("modified_life_hours", "reference_life_hours", "modified_reference_life_hours"):
+        assert getattr(found, name) == pytest.approx(getattr(cases, name), rel=0.02), name
+    assert found.static_equivalent_load == pytest.approx(found.Y0 * 40_000.0)
+    assert "the whole run" in found.notes["life"]
+    asked = trb.rating(spike.window(0.02, 0.04))
+    assert asked.life_hours == pytest.approx(196_722.0, rel=1e-3)
+    assert "the window that was asked for" in asked.notes["life"]
+
+
+def test_the_file_and_the_report_say_the_same_life(
+    spike: trb.Result, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from trbdyn.cli import main
+
+    (file,) = spike._source.files
+    told = trb.rating(spike)
+    assert trb.rating(trb.load(file)).life_hours == told.life_hours
+    assert main(["rating", str(file), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["life_hours"] == told.life_hours
+    page = trb.report(spike, tmp_path / "spike.html", pictures=[]).read_text(encoding="utf-8")
+    assert "less than the 3000 h" in page
+    assert "the whole run" in page
+
+
+def test_a_scene_whose_load_changes_says_that_its_sheet_is_of_the_start(spike: trb.Result) -> None:
+    assert any(
+        "axial_load change: this sheet is of the loads at 0 s alone" in one for one in trb.rating(spike.scene).warnings
+    )
+
+
+def test_a_load_that_rotates_counts() -> None:
+    """4 kN that turn with the shaft beside 3 kN that rest: the mean of P^(10/3) over a turn, by hand; a wheel with 4 kN alone is
+    as one with 4 kN that rest.
+    """
+    turning = trb.RotatingLoad(load=4e3)
+    alone = trb.Scene(WITHOUT_RIBS, speed_rpm=1000.0, rotating_load=turning, radial_load=0.0, ring="follows")
+    rests = trb.Scene(WITHOUT_RIBS, speed_rpm=1000.0, radial_load=4e3)
+    assert trb.rating(alone).life_hours == pytest.approx(trb.rating(rests).life_hours)
+    turned = np.linspace(0.0, 2.0 * np.pi, 1000, endpoint=False)
+    mean = np.mean(np.abs(3e3 + 4e3 * np.exp(1j * turned)) ** (10.0 / 3.0)) ** 0.3
+    both = trb.rating(alone.replace(radial_load=3e3))
+    assert both.equivalent_load == pytest.approx(mean, rel=1e-6)
+    assert both.static_equivalent_load == pytest.approx(7e3)
+
+
+NUP310: dict[str, Any] = {
+    "flanges": "NUP", "bore": 0.050, "outside": 0.110, "width": 0.027, "C": 127e3, "C0": 112e3, "F": 0.065,
+}  # fmt: skip
+
+
+def test_the_axial_load_of_ribs_counts_by_the_makers_factors() -> None:
+    """NUP 310 under 10 kN across and 20 kN along at 2000 rpm: 0.92 x 10 + 0.6 x 20 = 21.2 kN, (127/21.2)^(10/3) = 390.5 million
+    revolutions or 3254 h; the law of SKF permits 3.75 kN along, 1.5 x 112e4/(2000 x 160) - 0.15 x 10.
+    """
+    loads = {"speed_rpm": 2000.0, "radial_load": 10e3, "axial_load": 20e3}
+    known = trb.Bearing.from_catalogue(**NUP310, e=0.2, Y=0.6)
+    found = trb.rating(trb.Scene(known, **loads))
+    assert found.equivalent_load == pytest.approx(21_200.0)
+    assert found.life_hours == pytest.approx(1e6 / 120e3 * (127.0 / 21.2) ** (10.0 / 3.0))
+    assert found.axial_load_left_out is None
+    assert found.permissible_axial_load == pytest.approx(3750.0)
+    assert any("above the 3750 N that ribs carry for long" in one for one in found.warnings)
+    assert any("2 times the radial one: makers permit up to 0.5 times" in one for one in found.warnings)
+    within = trb.rating(trb.Scene(known, **loads | {"axial_load": 1.9e3}))
+    assert within.equivalent_load == 10e3
+    assert within.warnings == ()
+    one_of_them = trb.Bearing.from_catalogue(**NUP310, Y=0.4)
+    assert trb.rating(trb.Scene(one_of_them, **loads)).e == pytest.approx(0.3)
+
+
+def test_a_life_that_leaves_an_axial_load_out_says_so(tmp_path: Path) -> None:
+    scene = trb.Scene(
+        trb.Bearing.from_catalogue(**NUP310), speed_rpm=2000.0, radial_load=10e3, axial_load=20e3, ring="follows"
+    )
+    found = trb.rating(scene)
+    assert found.equivalent_load == 10e3
+    assert found.axial_load_left_out == 20e3
+    assert any("all lives leave it out" in one and "L10h would be 3254 h with e = 0.2" in one for one in found.warnings)
+    assert "leave it out" in str(found)
+    result = trb.Simulation(scene).run(duration=1e-3)
+    page = trb.report(result, tmp_path / "ribs.html", pictures=[]).read_text(encoding="utf-8")
+    assert "all lives leave it out" in page
+    assert "No life counts the axial load of" in page
+
+
+@pytest.mark.parametrize(
+    ("radial", "given", "expected"),
+    [
+        (10e3, {}, 3750.0),
+        (10e3, {"grease": True}, 2500.0),
+        (0.0, {"speed_rpm": 200.0}, 5192.0),
+        (60e3, {}, 0.0),
+        (0.0, {"speed_rpm": 0.0}, 5192.0),
+        (0.0, {"C0": 1060e3, "bore": 0.2, "outside": 0.36, "width": 0.058, "speed_rpm": 1000.0}, 20_880.0),
+    ],
+)
+def test_what_ribs_carry(radial: float, given: dict[str, Any], expected: float) -> None:
+    """By hand: heat 1.5 x 112e4/(2000 x 160) - 0.15 Fr, grease 1 x 112e4/(2000 x 160) - 0.1 Fr; strength 0.0045 x 110^1.5; of an
+    NU 240 with its surface of 102 000 mm2 7.5 x 1.5 x 1060^(2/3) x 1e4/(1000 x 560).
+    """
+    from trbdyn.standards.ribs import permissible_axial_load
+
+    own: dict[str, Any] = {"speed_rpm": 2000.0, "C0": 112e3, "bore": 0.05, "outside": 0.11, "width": 0.027} | given
+    assert permissible_axial_load(radial_load=radial, **own) == pytest.approx(expected, rel=2e-3)
+
+
+def test_a_load_that_one_tapered_bearing_cannot_hold_has_its_basic_life() -> None:
+    """32208 under 10 kN across and 1.5 kN along at 1000 rpm: Fa/Fr = 0.15 <= e, P = 10 kN (ISO 281); a measured series
+    that crosses Fr tan(alpha) adds its damages up.
+    """
+    scene = trb.Scene(trb.Bearing.named("32208"), speed_rpm=1000.0, axial_load=1500.0, radial_load=10e3)
+    found = trb.rating(scene)
+    C = found.dynamic_rating
+    assert found.life_hours == pytest.approx(miner([(10e3, 1.0)], C, 1000.0))
+    assert found.modified_life_hours is not None
+    assert (found.reference_life_hours, found.modified_reference_life_hours, found.pressure_safety) == (None,) * 3
+    assert "no equilibrium" in found.notes["reference_life"]
+    assert any("a second bearing must give it more" in one for one in found.warnings)
+    rows = [{"share": 1.0, "axial_load": 1500.0}, {"share": 3.0, "axial_load": 9000.0}]
+    series = trb.rating(trb.spectrum(scene, rows))
+    other = 0.4 * 10e3 + found.Y * 9000.0
+    assert series.life_hours == pytest.approx(miner([(10e3, 0.25), (other, 0.75)], C, 1000.0))
+    assert series.reference_life_hours is None
+    alone = trb.rating(scene.replace(axial_load=0.0))
+    assert alone.life_hours == found.life_hours
+    for refused in (trb.Simulation, trb.stiffness):
+        with pytest.raises(trb.InputError, match=r"radial_load = 10000\.0 : must be < .*all it can carry"):
+            refused(scene)
+    with pytest.raises((trb.LoadError, trb.InputError)):
+        trb.rating(scene.replace(axial_load=4000.0, moment_x=1e4))

@@ -235,7 +235,7 @@ def test_lives_of_a_pair_stand_in_its_report(tmp_path: Path) -> None:
     found = trb.rating(result)
     own = [trb.rating(one).life_hours for one in result.values()]
     assert [one.life_hours for one in found.bearings.values()] == own
-    assert found.life_hours == pytest.approx(sum(life ** (-9 / 8) for life in own) ** (-8 / 9), rel=1e-12)
+    assert found.life_hours == pytest.approx(sum(life ** (-27 / 20) for life in own) ** (-20 / 27), rel=1e-12)
     text = trb.report(result, tmp_path / "pair.html", pictures=[]).read_text(encoding="utf-8")
     lives = text.partition("<h2>Lives</h2>")[2].partition("</table>")[0]
     for life in (*own, found.life_hours):

@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 import trbdyn as trb
 from trbdyn import Assembly, InputError, Scene, ShaftLoad, Simulation
 from trbdyn.standards import lamina
-from trbdyn.standards.sheet import at_equilibrium
+from trbdyn.standards.loading import at_equilibrium
 from trbdyn.statics.core_model import normal_contacts
 
 BEARING = trb.cases.rig_30310()
@@ -221,13 +221,31 @@ def test_rows_lie_where_they_are_said_to() -> None:
 
 @pytest.mark.parametrize("kind", ["TDO", "TQO", ("left", "left", "left")])
 def test_the_life_of_all_rows_is_that_of_independent_failures(kind: Any) -> None:
-    """Weibull slopes of 9/8: by probabilities of survival, each row alone and all together."""
+    """By probabilities of survival, each row alone and all together: Weibull slopes of 9/8 for the reference lives, and of 27/20
+    for those of ISO 281, with which equal rows have its i^(7/9).
+    """
     push = [ShaftLoad(position=0.005, force=(0.0, -9000.0, -3000.0))]
     rated = trb.rating(rows(kind, loads=push, end_play=0.0 if kind[0] == "left" else -15e-6))
     for life in (*CATALOGUE_LIVES, *REFERENCE_LIVES):
         whole = getattr(rated, life)
-        survive = [0.9 ** ((whole / getattr(one, life)) ** (9.0 / 8.0)) for one in rated.bearings.values()]
+        slope = 27.0 / 20.0 if life in CATALOGUE_LIVES else 9.0 / 8.0
+        survive = [0.9 ** ((whole / getattr(one, life)) ** slope) for one in rated.bearings.values()]
         assert math.prod(survive) == pytest.approx(0.9, rel=1e-9), life
+
+
+@pytest.mark.parametrize("count", [2, 4])
+def test_equal_rows_have_the_life_of_iso_281(count: int) -> None:
+    """Rows in tandem that share an axial load: C = i^(7/9) C1 and P = i P1 in (C/P)^(10/3) (ISO 281, 7.1). The reference lives go
+    with the fourth power.
+    """
+    push = [ShaftLoad(position=0.0, force=(0.0, 0.0, -6000.0 * count))]
+    rated = trb.rating(
+        rows(("left",) * count, loads=push, end_play=0.0, row_distance=(0.05,) * (count - 1), gravity=(0.0,) * 3)
+    )
+    one = next(iter(rated.bearings.values()))
+    share = count ** (7.0 / 9.0) / count
+    assert rated.life_hours == pytest.approx(one.life_hours * share ** (10.0 / 3.0), rel=1e-3)
+    assert rated.reference_life_hours == pytest.approx(one.reference_life_hours * share**4.0, rel=1e-3)
 
 
 def test_a_double_row_runs() -> None:

@@ -127,7 +127,7 @@ def test_a_pair_carries_its_shaft(scene: trb.Scene) -> None:
     assert abs(sum(radial) - force[1]) < 1.2 * weight + 0.01 * force[1]
     lives = trb.rating(found)
     own = [one.life_hours for one in lives.bearings.values()]
-    assert lives.life_hours == pytest.approx(sum(life ** (-9 / 8) for life in own) ** (-8 / 9), rel=1e-9)
+    assert lives.life_hours == pytest.approx(sum(life ** (-27 / 20) for life in own) ** (-20 / 27), rel=1e-9)
 
 
 def test_a_ramp_says_that_it_is_one(scene: trb.Scene) -> None:

@@ -225,6 +225,8 @@ def _build(made: Built, design: Design) -> None:
     else:
         made.subject, made.options = subject_from_dict(tables)
         made.tables = tables
+        if isinstance(made.subject, Scene):
+            made.subject.check_capacity()
     if made.options.revolutions is None and made.options.duration is None:
         raise InputError.of(("run", "revolutions"), None, "must be given: how long the run is")
     made.options.end_time(made.subject)

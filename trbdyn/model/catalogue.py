@@ -30,6 +30,8 @@ OTHER_MAKER: Final = 0.6
 """Angle (deg) by which a contact angle that is known may differ from the one that e or Y of another maker tell."""
 ROUNDED_TWICE: Final = 0.2
 """Angle (deg) by which e and Y of one page may differ beyond their last digits: a 32303 is listed with e = 0.29, Y = 1.97."""
+ANGLES: Final = (5.0, 45.0)
+"""Half angles of the cup that a page may tell (deg): e from 0.13 to 1.5. Flatter ones were not found in any catalogue."""
 _ANGLE_SOURCE: Final = "tan(alpha) = e/1.5 (ISO 281), e as rounded in the catalogue"
 NAMES_OF_CATALOGUES: Final = {
     "d": "bore",
@@ -234,8 +236,11 @@ def _angle(e: float | None, Y: float | None, angle: float | None) -> tuple[float
     else:
         raise InputError.of("e", None, "must be given, or Y, or contact_angle_deg: it gives the angle of the cup (1)")
     key, value = ("contact_angle_deg", angle) if angle is not None else ("e", e) if e is not None else ("Y", Y)
-    if not 7.0 <= chosen <= 35.0:
-        raise InputError.of(key, value, f"must give a contact angle from 7 to 35 deg, not {chosen:.3g} deg")
+    least, most = ANGLES
+    if not least <= chosen <= most:
+        raise InputError.of(
+            key, value, f"must give a contact angle from {least:g} to {most:g} deg, not {chosen:.3g} deg"
+        )
     slack = ROUNDED_TWICE if angle is None else OTHER_MAKER
     for other, (low, high) in bands.items():
         if band[1] + slack < low or high + slack < band[0]:

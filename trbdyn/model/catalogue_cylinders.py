@@ -17,7 +17,7 @@ from trbdyn.model.tolerances import CLEARANCE_SIZES, clearance_limits
 TYPES: Final = ("NU", "NJ", "NUP", "N")
 """Types of cylindrical bearings (ISO 15)."""
 OF_CYLINDERS: Final[tuple[str, ...]] = ("F", "E", "radial_clearance")
-OF_CONES: Final[tuple[str, ...]] = ("e", "Y", "Y0", "contact_angle_deg", "cup_width")
+OF_CONES: Final[tuple[str, ...]] = ("Y0", "contact_angle_deg", "cup_width", "a")
 """What a page of one kind of bearing tells, and one of the other kind does not."""
 AFTER_FIT: Final = 0.5
 """Share of that clearance that fits and warm shafts leave; assumed, between none and all of it."""

@@ -57,7 +57,8 @@ class Catalogued(Model):
         C, C0, Cu : float
             Ratings and fatigue load limit, also called Pu (N); C alone is needed, the others are for `trbdyn.rating`.
         e, Y, Y0 : float, optional
-            Calculation factors; e or Y, or the contact angle, must be given, and they must agree (1).
+            Calculation factors; e or Y, or the contact angle, must be given, and they must agree (1). Of a cylindrical bearing
+            NJ or NUP e and Y are the maker's for the axial load on its ribs, and need not be given.
         n_rollers : int, optional
             Z.
         roller_diameter, roller_length, pitch_diameter, cup_width : float, optional

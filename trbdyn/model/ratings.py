@@ -22,7 +22,7 @@ class Ratings(Model):
     e : float, optional
         Largest Fa/Fr at which P = Fr (1).
     Y : float, optional
-        Factor of the axial load in P = 0.4 Fr + Y Fa (1).
+        Factor of the axial load in P = 0.4 Fr + Y Fa, of a cylindrical bearing in P = 0.92 Fr + Y Fa (1).
     Y0 : float, optional
         Factor of the axial load in P0 = 0.5 Fr + Y0 Fa (1).
     reference_speed_rpm : float, optional

@@ -403,8 +403,8 @@ class Scene(TurningRings, Model):
             raise InputError.of("unloaded", "rests", "must be 'refused' where displacement gives the axial position")
         if self.bearing.is_cylindrical:
             self._check_cylindrical()
-        elif self.unloaded == "refused" and not z:
-            self._check_capacity()
+        elif not any(values_of(self.radial_load)) and not any(values_of(turning)):
+            self.check_capacity()
 
     def _check_held(self) -> None:
         if self.ring != "held" or all(self.ring_is_placed):
@@ -472,7 +472,17 @@ class Scene(TurningRings, Model):
             )
             raise InputError.of("radial_load", loads[time], allowed)
 
-    def _check_capacity(self) -> None:
+    def check_capacity(self) -> None:
+        """Refuse loads that a tapered bearing cannot hold by itself: it needs ``Fa > Fr tan(alpha)`` at all times. A scene with
+        other loads can be made, as `trbdyn.rating` gives it the basic life of ISO 281; what needs an equilibrium refuses it.
+
+        Raises
+        ------
+        InputError
+            If they cannot be held; it names the load, and the time where loads change.
+        """
+        if self.bearing.is_cylindrical or self.unloaded == "rests" or self.ring_is_placed[2]:
+            return
         slope = math.tan(math.radians(self.bearing.cup_half_angle_deg))
         turning = 0.0 if self.rotating_load is None else self.rotating_load.load
         parts = [self.axial_load, self.radial_load, turning]

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from trbdyn.model.motion import value_at
+from trbdyn.model.motion import value_at, values_of
 from trbdyn.results.fields import contacts
 from trbdyn.results.result import Result
 from trbdyn.run import estimate
@@ -61,7 +61,7 @@ def verdict(result: Result, numbers: dict[str, Any]) -> list[Sentence]:
 
     The numbers are those of the summary, with the lives of the run's records where it has none, as speed or loads change.
     """
-    parts = (_end, _life, _static, _pressure, _films, _torque, _whirl, _hits, _energy, _exactness)
+    parts = (_end, _life, _on_ribs, _static, _pressure, _films, _torque, _whirl, _hits, _energy, _exactness)
     return [sentence for part in parts if (sentence := part(result, numbers)) is not None]
 
 
@@ -119,6 +119,10 @@ def _life(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     rest = "; ".join(f"{LIVES[name]} {life_text(found[name])} h" for name in found if name != best)
     said = f"{LIVES[best]}, which counts the most of what acts, is {life_text(found[best])} h{f' ({rest})' if rest else ''}."
     judged = f"It is judged by the shortest, {LIVES[shortest]}: " if len(found) > 1 else ""
+    left_out = numbers.get("axial_load_left_out")
+    if left_out:
+        told = f"No life counts the axial load of {left_out:.4g} N on the ribs: give the maker's e and Y. {said}"
+        return "bad" if hours < SHORT_LIFE else "care", "Life, without the axial load", told
     if hours >= USUAL_LIFE:
         return "good", "Life", f"{said} {judged}machines of eight hours a day ask for {USUAL_LIFE:g} h or more."
     if hours >= SHORT_LIFE:
@@ -128,6 +132,19 @@ def _life(result: Result, numbers: dict[str, Any]) -> Sentence | None:
             f"{said} {judged}less than the {USUAL_LIFE:g} h that machines of eight hours a day ask for.",
         )
     return "bad", "Life", f"{said} {judged}less than the {SHORT_LIFE:g} h that even machines for rare use ask for."
+
+
+def _on_ribs(result: Result, numbers: dict[str, Any]) -> Sentence | None:
+    """An axial load on ribs that a maker would not permit."""
+    permissible, axial = numbers.get("permissible_axial_load"), max(map(abs, values_of(result.scene.axial_load)))
+    if permissible is None or axial <= permissible:
+        return None
+    return (
+        "bad",
+        "Axial load on the ribs",
+        f"The ribs carry {axial:.4g} N along the axis; a maker permits {permissible:.4g} N at this speed, radial load and "
+        "lubrication (trb.rating says by which law).",
+    )
 
 
 def _static(result: Result, numbers: dict[str, Any]) -> Sentence | None:

@@ -173,6 +173,16 @@ QUANTITIES: Final[dict[str, Quantity]] = {
         "N",
         "The radial load that would wear the bearing out as fast, by the factors of the catalogue.",
     ),
+    "axial_load_left_out": Quantity(
+        "axial load that no life counts",
+        "N",
+        "It acts on ribs, which ISO 281 does not rate: give the maker's e and Y, see trb.rating.",
+    ),
+    "permissible_axial_load": Quantity(
+        "axial load that ribs carry for long",
+        "N",
+        "By heat and strength of the ribs, a law of a maker: see trb.rating.",
+    ),
     "basic_life_hours": Quantity(
         "basic rating life L10h (ISO 281)", "h", "Nine of ten bearings last so long, by the catalogue's rating alone."
     ),

@@ -258,6 +258,11 @@ class Result(Derived, Displayed):
         return Result(part, replace(self._info, peaks={}), self._scene)
 
     @property
+    def is_window(self) -> bool:
+        """Whether it is a part of the records of a run, as `window` makes it."""
+        return self._source.is_part
+
+    @property
     def peaks(self) -> Peaks:
         """Extremes, means and impacts between the records too: of the whole run, or of a window's records.
 

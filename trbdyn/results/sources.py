@@ -28,6 +28,11 @@ class Source:
         """The files that it reads from."""
         return ()
 
+    @property
+    def is_part(self) -> bool:
+        """Whether records of the run are left out."""
+        return False
+
     def read(self, name: str) -> Array:
         """All records of one field, time first."""
         raise NotImplementedError
@@ -82,6 +87,11 @@ class WindowSource(Source):
     def read(self, name: str) -> Array:
         """All records of one field within the window, time first."""
         return self._source.read(name)[self._rows]
+
+    @property
+    def is_part(self) -> bool:
+        """Whether records of the run are left out."""
+        return self.n_records < self._source.n_records or self._source.is_part
 
     @property
     def files(self) -> tuple[Path, ...]:

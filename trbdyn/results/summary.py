@@ -27,7 +27,8 @@ from trbdyn.results import conditions, notes, observables
 from trbdyn.results.confidence import confidence
 from trbdyn.results.fields import carrying
 from trbdyn.results.quantities import QUANTITIES
-from trbdyn.standards.sheet import Rating, at_equilibrium, life_text, sheet
+from trbdyn.standards.loading import at_equilibrium
+from trbdyn.standards.sheet import Rating, life_text, sheet
 
 if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
@@ -35,6 +36,8 @@ if TYPE_CHECKING:
 
 RATINGS: Final = (
     "equivalent_load",
+    "axial_load_left_out",
+    "permissible_axial_load",
     "smallest_load",
     "modified_life_hours",
     "reference_life_hours",

@@ -4,28 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any, Final, TypedDict, Unpack, overload
-
-import numpy as np
+from typing import Any, TypedDict, Unpack, overload
 
 from trbdyn.base.expected import expect
 from trbdyn.errors import InputError
 from trbdyn.model.assembly import Assembly
 from trbdyn.model.bearing import Bearing
-from trbdyn.model.motion import History, value_at
 from trbdyn.model.scene import Scene
 from trbdyn.model.spectrum import Spectrum
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.result import Result
-from trbdyn.run.replay import Replay
-from trbdyn.standards.sheet import Loading, Rating, at_equilibrium, lamina_loads, ring_loads, sheet
-from trbdyn.standards.spectrum import SpectrumRating, over_cases
-from trbdyn.standards.system import SystemRating, loading_of, system_of, system_sheet
+from trbdyn.run.run_loads import of_run
+from trbdyn.standards.loading import Loading, at_equilibrium
+from trbdyn.standards.sheet import Rating, sheet
+from trbdyn.standards.spectrum import SpectrumRating, over_cases, over_run
+from trbdyn.standards.system import SystemRating, loadings_of, system_of, system_sheet
 from trbdyn.statics.assembly import ShaftEquilibrium, equilibrium
 from trbdyn.statics.fit import Fit
-
-RECORDS: Final = 60
-"""Records of a run that are evaluated, at most; evenly spread over its window."""
 
 
 class Options(TypedDict, total=False):
@@ -65,7 +60,9 @@ def rating(
 
     C, C0 and the factors are those of ``bearing.ratings`` (`Bearing.from_catalogue` keeps them there); what is not known is
     computed by ISO 281 and ISO 76 from the rollers, and the note says so. Reference lives (ISO 16281) stand on the loads of
-    the laminas: of a scene, those of the equilibrium at its start; of a result, those of its records after the transient.
+    the laminas: of a scene, those of the equilibrium at its start; of a result, those of its records. Where speed or loads of a
+    run change, lives, damage and static safety are of the whole run, or of all of a window (`Result.window`); where they are
+    constant, of the records after the transient. The sheet says which.
 
     Parameters
     ----------
@@ -123,13 +120,18 @@ def rating(
     if isinstance(subject, Scene):
         return sheet(subject, at_equilibrium(subject), **options)
     if isinstance(subject, Result):
-        return sheet(subject.scene, of_run(subject), **options)
+        return _of_result(subject, options)
     if isinstance(subject, Mapping):
         parts: Mapping[str, Any] = subject
-        return system_of({name: sheet(one.scene, of_run(one), **options) for name, one in parts.items()})
+        return system_of({name: _of_result(one, options) for name, one in parts.items()})
     if isinstance(subject, ShaftEquilibrium):
         return system_sheet(subject, **options)
     return system_sheet(equilibrium(subject), **options)
+
+
+def _of_result(result: Result, options: dict[str, Any]) -> Rating:
+    loads = of_run(result)
+    return over_run(result.scene, loads.shares, loads.loadings, loads.whole, **options)
 
 
 def _of_fit(fits: Fit, options: dict[str, Any]) -> Rating | SystemRating:
@@ -154,52 +156,4 @@ def _loadings(subject: Scene | Assembly) -> dict[str, tuple[Scene, Loading]]:
     """What each bearing carries in its equilibrium, by its name; that of one bearing alone is empty."""
     if isinstance(subject, Scene):
         return {"": (subject, at_equilibrium(subject))}
-    return {one.name: (one.scene, loading_of(one)) for one in equilibrium(subject).bearings}
-
-
-def of_run(result: Result) -> Loading:
-    """Loads of a run's records after the transient; each counts by the speed between the rings, that is by revolutions. An
-    InputError if the groups cage and rollers were not recorded.
-    """
-    replay, scene, time = Replay(result), result.scene, result["time"]
-    first = int(np.searchsorted(time, result.settling().time)) if len(result) > 2 else 0
-    chosen = np.unique(np.linspace(min(first, len(result) - 1), len(result) - 1, RECORDS).round().astype(int))
-    speeds = np.abs(result.rolling_speed[chosen])
-    shares = speeds / speeds.sum() if speeds.sum() > 0.0 else np.full(chosen.size, 1.0 / chosen.size)
-    loads, axial, radial, pressure = [], 0.0, 0.0, 0.0
-    x, y, z, *_ = scene.ring_is_placed
-    for index, share in zip(chosen.tolist(), shares, strict=True):
-        contacts = replay.contacts(index)
-        loads.append(lamina_loads(scene, contacts))
-        carried = ring_loads(scene, loads[-1][0].sum(axis=-1), result["roller_orbit_angle"][index])
-        axial += share * (carried[0] if z else value_at(scene.axial_load, float(time[index])))
-        radial += share * (carried[1] if x or y else value_at(scene.radial_load, float(time[index])))
-        pressure = max(pressure, float(np.max(contacts["raceway_pressure"])))
-    if "peaks" in result.groups:
-        peaks = result.peaks
-        pressure = max([pressure, *(float(np.max(peaks[f"{side}_pressure_peak"])) for side in ("outer", "inner"))])
-    return Loading(
-        axial_load=float(axial),
-        radial_load=float(radial),
-        speed_rpm=float(speeds.mean()) * 30.0 / np.pi,
-        lamina_loads=np.concatenate(loads, axis=1),
-        weights=np.repeat(shares, scene.bearing.n_rollers),
-        largest_pressure=pressure,
-        source=f"{chosen.size} records from {float(time[chosen[0]]):.3g} to {float(time[chosen[-1]]):.3g} s",
-        moments=_moments(scene, time),
-    )
-
-
-def _moments(scene: Scene, time: Any) -> tuple[tuple[float, float], ...]:
-    """Axial and radial load (N) at the knots of histories of loads within a run, where a load is largest; nothing where none
-    changes.
-    """
-    histories = [load for load in (scene.axial_load, scene.radial_load) if isinstance(load, History)]
-    if not histories:
-        return ()
-    knots = {float(t) for load in histories for t in load.times if time[0] <= t <= time[-1]}
-    at = np.union1d(np.asarray(time, dtype=float), sorted(knots))
-    axial, radial = (
-        np.abs([value_at(load or 0.0, float(t)) for t in at]) for load in (scene.axial_load, scene.radial_load)
-    )
-    return tuple(zip(axial.tolist(), radial.tolist(), strict=True))
+    return loadings_of(equilibrium(subject))

@@ -19,6 +19,8 @@ from numpy.typing import NDArray
 from trbdyn import _core
 from trbdyn.base.validation import Model
 from trbdyn.errors import FileError, InputError, RunWarning, StepError
+from trbdyn.model.assembly import assembly_of
+from trbdyn.model.motion import is_constant
 from trbdyn.model.shaft import turns
 from trbdyn.results import fields as field_table
 from trbdyn.results import peaks as peak_table
@@ -379,7 +381,14 @@ class Run:
         }
         if bearing.of.seat is not None:
             names = [one.name for one in self.sim.bearings]
-            meta["assembly"] = {"bearing": bearing.of.name, "bearings": names, "seat": bearing.of.seat.numbers()}
+            whole = assembly_of(self.sim.subject)
+            changes = whole is None or not all(is_constant(one) for one in whole.quantities().values())
+            meta["assembly"] = {
+                "bearing": bearing.of.name,
+                "bearings": names,
+                "seat": bearing.of.seat.numbers(),
+                "changes": changes,
+            }
         return meta
 
     def _in_file(self, bearing: RunningBearing) -> Result:

@@ -172,9 +172,9 @@ def life_factor(viscosity_ratio: float, load_ratio: float) -> float:
 
 
 def reliability_factor(reliability: float) -> float:
-    """a1 for a reliability from 90 to 99.95 (%): that of the standard's table, between its rows by the distribution behind it.
+    """a1 for a reliability from 90 to 99.95 (%): that of the standard's table, between its rows by its distribution.
 
-    a1 = (1 - C_g) [ln(100/S)/ln(100/90)]^(2/3) + C_g with C_g = 0.05: a distribution of Weibull with slope 1.5 and a life that all
+    a1 = (1 - C_g) [ln(100/S)/ln(100/90)]^(2/3) + C_g with C_g = 0.05: a Weibull distribution with slope 1.5 and a life that all
     bearings reach (ISO/TR 1281-2:2008). It gives the rows of the table within their two digits.
 
     Examples

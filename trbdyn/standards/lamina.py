@@ -99,15 +99,13 @@ class LaminaLoads:
         loads: Array,
         ratings: Array,
         *,
-        weights: Array | None = None,
         turning: tuple[bool, bool] = (False, True),
         edges: bool = True,
     ) -> LaminaLoads:
         """The means over all places of the rollers.
 
-        The loads at the outer and the inner ring (N), shape (2, P, n_s), are those of P places of a roller, which stand for
-        shares of the revolutions (`weights`, equal by default). `turning` says whether outer and inner ring turn against the
-        load, `edges` whether `stress_concentration` counts.
+        The loads at the outer and the inner ring (N), shape (2, P, n_s), are those of P places of a roller. `turning` says
+        whether outer and inner ring turn against the load, `edges` whether `stress_concentration` counts.
         """
         count = loads.shape[2]
         concentration = stress_concentration(count) if edges else np.ones(count)
@@ -116,7 +114,7 @@ class LaminaLoads:
         for ring, turns in enumerate(turning):
             exponent = 4.0 if turns else 4.5
             share = np.maximum(loads[ring], 0.0) * concentration / each[ring]
-            means.append(np.average(share**exponent, axis=0, weights=weights) ** (1.0 / exponent))
+            means.append(np.mean(share**exponent, axis=0) ** (1.0 / exponent))
         return cls(np.array(means), each)
 
     @property

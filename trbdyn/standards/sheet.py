@@ -16,13 +16,11 @@ from numpy.typing import NDArray
 
 from trbdyn.base.shown import Shown, Tabled
 from trbdyn.errors import InputError
-from trbdyn.model.contact_line import line_length, stations
-from trbdyn.model.motion import value_at
 from trbdyn.model.ratings import rating_iso76, rating_iso281
 from trbdyn.model.scene import Scene
-from trbdyn.standards import iso281, lamina
+from trbdyn.standards import iso281, lamina, ribs
+from trbdyn.standards.loading import Loading, turning_against_load
 from trbdyn.statics.plausible import PERMISSIBLE_PRESSURE
-from trbdyn.statics.start import contacts_at_start
 
 if TYPE_CHECKING:
     from trbdyn.statics.fit import Fit
@@ -74,6 +72,13 @@ RATED_AS_RADIAL: Final = 1e-3
 """Axial over radial load of a cylindrical bearing up to which nothing is said of it: a ring that leans makes as much."""
 
 
+USUAL_OF_CYLINDERS: Final = ((0.2, 0.6), (0.3, 0.4))
+"""e and Y that makers give for cylindrical bearings of the series 10, 2, 3 and 4, and of the wider ones."""
+_CYLINDERS: Final = 0.12
+"""Their product."""
+METHOD: Final = f"ISO 16281:2025, Qc of ISO/TS 16281:2008, {lamina.LAMINAS} laminas"
+
+
 def _number(words: str, symbol: str, unit: str = "") -> dict[str, str]:
     return {"words": words, "symbol": symbol, "unit": unit}
 
@@ -121,6 +126,10 @@ class Rating(Fitted):
     Y: float | None = field(metadata=_number("axial factor of P", "Y"))
     Y0: float | None = field(metadata=_number("axial factor of P0", "Y0"))
     equivalent_load: float = field(metadata=_number("equivalent dynamic load", "P", "N"))
+    axial_load_left_out: float | None = field(metadata=_number("axial load that no life counts", "Fa left out", "N"))
+    permissible_axial_load: float | None = field(
+        metadata=_number("axial load that ribs carry for long", "Fa perm", "N")
+    )
     load_ratio: float | None = field(metadata=_number("rating over equivalent load", "C/P"))
     smallest_load: float = field(metadata=_number("smallest load, so that rollers roll", "Pmin", "N"))
     life: float | None = field(metadata=_number("basic rating life", "L10", "million revolutions"))
@@ -216,77 +225,21 @@ def _digits(value: float | None) -> str:
     return "-" if value is None else f"{value:.4g}"
 
 
-@dataclass(frozen=True)
-class Loading:
-    """What a sheet stands on."""
-
-    axial_load: float  # mean (N)
-    radial_load: float  # mean (N)
-    speed_rpm: float  # mean of the inner ring against the outer ring, on which lives and films depend (rpm)
-    lamina_loads: Array  # at the outer and the inner ring (N), see `lamina.reference_life`, shape (2, P, n_s)
-    weights: Array | None  # share of the revolutions of each, shape (P,)
-    largest_pressure: float  # largest pressure on a raceway (Pa)
-    source: str  # of what: in words
-    moments: tuple[tuple[float, float], ...] = ()
-    """Axial and radial loads (N) at moments of a run whose loads change: the heaviest makes the static safety."""
-
-
-def lamina_loads(scene: Scene, contacts: dict[str, Array]) -> Array:
-    """Loads of the laminas (N), shape (2, Z, n_s), of the contacts of a scene, as `Simulation.contacts` gives them."""
-    per_length, weight = contacts["raceway_load_per_length"], contacts["raceway_weight"]
-    load = np.sum(per_length * weight, axis=-1)
-    length = scene.bearing.roller.effective_length
-    return lamina.in_laminas(per_length, stations(scene), load, length, line_length(scene))
-
-
-def ring_loads(scene: Scene, loads: Array, angles: Array) -> tuple[float, float]:
-    """Axial and radial load (N) that the outer raceway carries by these loads of its rollers (N) at these angles (rad)."""
-    slope = math.radians(scene.bearing.cup_half_angle_deg)
-    radial = np.array([np.sum(loads * np.cos(angles)), np.sum(loads * np.sin(angles))]) * math.cos(slope)
-    return float(np.sum(loads) * math.sin(slope)), float(np.hypot(*radial))
-
-
-def at_equilibrium(scene: Scene) -> Loading:
-    """Loads of the equilibrium at the scene's start."""
-    start = scene.start.time
-    still = scene.replace(start=scene.start.replace(kind="equal")) if scene.start.kind != "state" else scene
-    contacts = contacts_at_start(still)
-    loads = lamina_loads(scene, contacts)
-    x, y, z, *_ = scene.ring_is_placed
-    even = 2.0 * math.pi * np.arange(loads.shape[1]) / loads.shape[1]
-    carried = ring_loads(scene, loads[0].sum(axis=-1), even)
-    return Loading(
-        axial_load=carried[0] if z else value_at(scene.axial_load, start),
-        radial_load=carried[1] if x or y else value_at(scene.radial_load, start),
-        speed_rpm=scene.rolling_rpm(start),
-        lamina_loads=loads,
-        weights=None,
-        largest_pressure=float(np.max(contacts["raceway_pressure"])),
-        source="equilibrium at the start",
-    )
-
-
-def turning_against_load(scene: Scene) -> tuple[bool, bool]:
-    """Whether the outer, and whether the inner ring turns against the larger one of both loads, which may rotate itself."""
-    rotating, start = scene.rotating_load, scene.start.time
-    inner, outer = (value_at(speed, start) for speed in (scene.speed_rpm, scene.outer_speed_rpm))
-    load = 0.0
-    if rotating is not None and value_at(rotating.load, start) > value_at(scene.radial_load, start):
-        load = rotating.turns * inner if rotating.frequency_hz is None else 60.0 * rotating.frequency_hz
-    turning = tuple(not math.isclose(speed, load, rel_tol=1e-9, abs_tol=1e-9) for speed in (outer, inner))
-    return (turning[0], turning[1]) if any(turning) else (False, True)
-
-
 def sheet(scene: Scene, loading: Loading, **options: Any) -> Rating:
     """The sheet of a scene under a loading; see `trbdyn.rating`."""
     return rated(scene, loading, **options)[0]
+
+
+def dynamic_rating(scene: Scene) -> float:
+    """C of its bearing (N)."""
+    return _factors(scene, {})[0]
 
 
 def contact_ratings(scene: Scene) -> Array:
     """Q_ce and Q_ci of its bearing (N), see `lamina.contact_ratings`."""
     bearing = scene.bearing
     return lamina.contact_ratings(
-        _factors(scene, {})[0],
+        dynamic_rating(scene),
         n_rollers=bearing.n_rollers,
         roller_diameter=bearing.roller.diameter,
         pitch_diameter=bearing.pitch_diameter,
@@ -312,19 +265,26 @@ def rated(
     pitch, angle = bearing.pitch_diameter, math.radians(bearing.cup_half_angle_deg)
     C, C0, Cu, e, Y, Y0 = _factors(scene, notes)
     axial, radial, speed = abs(loading.axial_load), loading.radial_load, abs(loading.speed_rpm)
-    if e is None or Y is None or Y0 is None:
-        P = radial
-        P0 = max([radial, *(one for _, one in loading.moments)])
+    said += loading.said
+    moments = [(axial, radial), *((abs(a), r) for a, r in loading.moments)]
+    P = _equivalent_load(scene, axial, radial, e, Y) if loading.equivalent_load is None else loading.equivalent_load
+    P0 = max(r if Y0 is None else iso281.static_equivalent_load(r, a, Y0=Y0) for a, r in moments)
+    left_out, permissible = None, None
+    if loading.equivalent_load is not None and loading.moments:
+        notes["equivalent_load"] = "the steady load with the same life as the loads of the run"
+    elif e is None or Y is None:
         notes["equivalent_load"] = "Fr (ISO 281, contact angle 0)"
-        if axial > RATED_AS_RADIAL * radial:
-            said.append(
-                f"the axial load {axial:.4g} N acts on ribs alone, which ISO 281 does not rate: look at rib pressures and losses"
-            )
     else:
-        P = iso281.equivalent_load(radial, axial, e=e, Y=Y)
-        moments = [(axial, radial), *((abs(a), r) for a, r in loading.moments)]
-        P0 = max(iso281.static_equivalent_load(r, a, Y0=Y0) for a, r in moments)
-        notes["equivalent_load"] = "Fr" if axial <= e * radial else "0.4 Fr + Y Fa"
+        beyond = "0.92 Fr + Y Fa (makers)" if bearing.is_cylindrical else "0.4 Fr + Y Fa"
+        notes["equivalent_load"] = "Fr" if iso281.within_e(radial, axial, e) else beyond
+    if bearing.is_cylindrical and max(a for a, _ in moments) > RATED_AS_RADIAL * radial:
+        heaviest = max(moments)
+        if e is None or Y is None:
+            left_out = axial
+            said.append(_left_out(C, axial, radial, speed))
+        if bearing.ribs.flanges in ("NJ", "NUP"):
+            permissible = _permissible(scene, notes, C0, radial, speed)
+            said += _of_ribs(heaviest, permissible, notes["permissible_axial_load"])
     if loading.moments:
         notes["static_equivalent_load"] = "heaviest moment of the run"
     smallest = iso281.SMALLEST_LOAD_SHARE * C
@@ -335,11 +295,14 @@ def rated(
         )
 
     life = _finite(iso281.basic_life(C, P))
-    laminas = lamina.LaminaLoads.of(
-        loading.lamina_loads, contact_ratings(scene), weights=loading.weights, turning=turning_against_load(scene)
-    )
-    reference = _finite(laminas.reference_life)
-    notes["reference_life"] = f"ISO 16281:2025, Qc of ISO/TS 16281:2008, {lamina.LAMINAS} laminas, {loading.source}"
+    laminas, reference = None, None
+    notes["reference_life"] = loading.source
+    if loading.lamina_loads is not None:
+        laminas = lamina.LaminaLoads.of(
+            loading.lamina_loads, contact_ratings(scene), turning=turning_against_load(scene)
+        )
+        reference = _finite(laminas.reference_life)
+        notes["reference_life"] = f"{METHOD}, {loading.source}"
     reference_load = None if reference is None else C / reference ** (1.0 / iso281.LIFE_EXPONENT)
 
     viscosity = 1e6 * scene.lubricant.kinematic_viscosity
@@ -350,7 +313,7 @@ def rated(
     a1 = iso281.reliability_factor(reliability)
     notes["reliability_factor"] = f"reliability {reliability:g} %"
     modified_reference, factors = None, None
-    if factor is not None and reference is not None:
+    if factor is not None and reference is not None and laminas is not None:
         parts = laminas.equivalent_loads(n_rollers=bearing.n_rollers, angle=angle)
         factors = np.array([_life_factor(kappa, oil, Cu, float(part), pitch, {}, [])[0] or 1.0 for part in parts])
         modified_reference = a1 * laminas.modified_life(factors.__getitem__)
@@ -362,14 +325,15 @@ def rated(
         notes["modified_life"] = ", ".join(f"{_digits(other)} with -/{code}" for code, other in listed)
 
     over: dict[str, Any] = {}
+    fastest = speed if loading.largest_speed_rpm is None else loading.largest_speed_rpm
     for name, limit in (
         ("speed_over_reference", bearing.ratings.reference_speed_rpm),
         ("speed_over_limit", bearing.ratings.limiting_speed_rpm),
     ):
-        over[name] = None if limit is None else speed / limit
-        if limit is not None and speed > limit:
+        over[name] = None if limit is None else fastest / limit
+        if limit is not None and fastest > limit * (1.0 + iso281.ROUNDING):
             words = "reference" if name == "speed_over_reference" else "limiting"
-            said.append(f"the speed of {speed:g} rpm is above the catalogue's {words} speed of {limit:g} rpm")
+            said.append(f"the speed of {fastest:g} rpm is above the catalogue's {words} speed of {limit:g} rpm")
     safety = PERMISSIBLE_PRESSURE / loading.largest_pressure if loading.largest_pressure > 0.0 else None
     if axial <= 0.0 and radial <= 0.0:
         notes["life"] = "no load"
@@ -384,6 +348,8 @@ def rated(
         Y=Y,
         Y0=Y0,
         equivalent_load=P,
+        axial_load_left_out=left_out,
+        permissible_axial_load=permissible,
         load_ratio=C / P if P > 0.0 else None,
         smallest_load=smallest,
         life=life,
@@ -412,11 +378,63 @@ def rated(
     return found, factors
 
 
+def equivalent_loads(scene: Scene, axial: Array, radial: Array) -> Array:
+    """P (N) of axial and radial loads (N), shape (T,)."""
+    *_, e, Y, _ = _factors(scene, {})
+    return np.array([_equivalent_load(scene, a, r, e, Y) for a, r in zip(axial.tolist(), radial.tolist(), strict=True)])
+
+
+def _equivalent_load(scene: Scene, axial: float, radial: float, e: float | None, Y: float | None) -> float:
+    if e is None or Y is None:
+        return radial
+    law = iso281.equivalent_load_of_cylinders if scene.bearing.is_cylindrical else iso281.equivalent_load
+    return law(radial, abs(axial), e=e, Y=Y)
+
+
+def _left_out(C: float, axial: float, radial: float, speed: float) -> str:
+    """That no life counts an axial load, and what makers' usual factors would say."""
+    lives = []
+    for e, Y in USUAL_OF_CYLINDERS:
+        load = iso281.equivalent_load_of_cylinders(radial, axial, e=e, Y=Y)
+        lives.append(f"{life_text(_hours(iso281.basic_life(C, load), speed))} h with e = {e:g} and Y = {Y:g}")
+    would = f"; L10h would be {lives[0]} (series 10, 2, 3, 4), {lives[1]} (wider series)" if speed else ""
+    return (
+        f"the axial load {axial:.4g} N acts on ribs, which ISO 281 does not rate: all lives leave it out; give the maker's e and "
+        f"Y as ratings.e and ratings.Y{would}"
+    )
+
+
+def _permissible(scene: Scene, notes: dict[str, str], C0: float, radial: float, speed: float) -> float:
+    bearing = scene.bearing
+    pitch, thick = bearing.pitch_diameter, bearing.roller.diameter
+    bore, outside = bearing.bore or pitch - 2.0 * thick, bearing.outside or pitch + 2.0 * thick
+    given: dict[str, Any] = {"speed_rpm": speed, "radial_load": radial, "C0": C0, "bore": bore, "outside": outside}
+    oil, grease = (ribs.permissible_axial_load(**given, width=bearing.width, grease=one) for one in (False, True))
+    notes["permissible_axial_load"] = (
+        f"law of SKF by heat and strength of the ribs, with oil; with grease {grease:.4g} N"
+    )
+    return oil
+
+
+def _of_ribs(moment: tuple[float, float], permissible: float, law: str) -> list[str]:
+    """What is wrong with an axial and a radial load (N) on ribs."""
+    axial, radial = moment
+    said = []
+    if axial > permissible:
+        said.append(f"the axial load {axial:.4g} N is above the {permissible:.4g} N that ribs carry for long ({law})")
+    if axial > ribs.SHARE_OF_RADIAL * radial:
+        times = axial / radial if radial else math.inf
+        said.append(
+            f"the axial load is {times:.3g} times the radial one: makers permit up to {ribs.SHARE_OF_RADIAL:g} times"
+        )
+    return said
+
+
 def _factors(
     scene: Scene, notes: dict[str, str]
 ) -> tuple[float, float, float, float | None, float | None, float | None]:
     """C, C0, Cu, e, Y and Y0: of the catalogue, else by the standards from the rollers and the cup's angle; a cylindrical bearing
-    has none of the last three.
+    has e and Y where its catalogue gives one of them, and no Y0.
     """
     bearing, known = scene.bearing, scene.bearing.ratings
     slope = math.tan(math.radians(bearing.cup_half_angle_deg))
@@ -437,7 +455,12 @@ def _factors(
     ):
         notes[name] = "catalogue" if value is not None else how
     if bearing.is_cylindrical:
-        return C, C0, limit, None, None, None
+        if known.e is None and known.Y is None:
+            return C, C0, limit, None, None, None
+        e, Y = known.e or _CYLINDERS / (known.Y or 1.0), known.Y or _CYLINDERS / (known.e or 1.0)
+        for name, value in (("e", known.e), ("Y", known.Y)):
+            notes[name] = "catalogue" if value is not None else "e Y = 0.12, as makers have it for cylindrical bearings"
+        return C, C0, limit, e, Y, None
     # a catalogue that tells one of e and Y: the other one by e Y = 0.6
     e = known.e or (0.6 / known.Y if known.Y is not None else 1.5 * slope)
     Y = known.Y or (0.6 / known.e if known.e is not None else 0.4 / slope)

@@ -13,7 +13,7 @@ With a life factor of its own for each lamina and case q_i is divided by a_ISO^(
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -23,16 +23,8 @@ from trbdyn.base.shown import Shown, Tabled
 from trbdyn.errors import InputError
 from trbdyn.model.scene import Scene
 from trbdyn.standards import iso281, lamina
-from trbdyn.standards.sheet import (
-    LIVES,
-    WHICH_LIFE,
-    Loading,
-    Rating,
-    contact_ratings,
-    life_text,
-    rated,
-    turning_against_load,
-)
+from trbdyn.standards.loading import Loading, turning_against_load
+from trbdyn.standards.sheet import LIVES, METHOD, WHICH_LIFE, Rating, contact_ratings, life_text, rated
 
 Array = NDArray[np.float64]
 
@@ -128,7 +120,7 @@ def over_cases(
         (share, *one) for share, one in zip(shares, zip(loadings, each, strict=True), strict=True) if _turns(one)
     ]
     reference = modified = None
-    if life is not None:
+    if life is not None and all(loading.lamina_loads is not None for _, (_, loading), _ in turning):
         a1 = next(iter(sheets.values())).reliability_factor
         even = [(share, scene, loading, None) for share, (scene, loading), _ in turning]
         reference = _reference_life(even, speed)
@@ -154,6 +146,32 @@ def over_cases(
     )
 
 
+def over_run(
+    scene: Scene, shares: Sequence[float], loadings: Sequence[Loading], whole: Loading, **options: Any
+) -> Rating:
+    """The sheet of a run from stretches with shares of the time, whose sum is 1: lives add up over them."""
+    names = [str(k) for k in range(len(loadings))]
+    found = over_cases(names, shares, [(scene, one) for one in loadings], **options)
+    sheet, _ = rated(scene, whole, **options)
+    speed = sheet.speed_rpm
+
+    def turns(life: float | None) -> float | None:
+        return None if life is None else 60e-6 * life * speed
+
+    lives = {name: getattr(found, name) for name in LIVES}
+    million = {name.removesuffix("_hours"): turns(life) for name, life in lives.items()}
+    reference, modified = million["reference_life"], million["modified_life"]
+    factor = None
+    if modified is not None and million["life"]:
+        factor = modified / (sheet.reliability_factor * million["life"])
+    notes = sheet.notes | {"life": whole.source, "reference_life": f"{METHOD}, {whole.source}"}
+    if whole.moments:
+        notes["life_factor"] = "the mean of all stretches of the run"
+    load = None if reference is None else sheet.dynamic_rating / reference ** (1.0 / iso281.LIFE_EXPONENT)
+    changed: dict[str, Any] = {**lives, **million, "life_factor": factor, "reference_load": load, "notes": notes}
+    return replace(sheet, **changed)
+
+
 def _turns(one: tuple[tuple[Scene, Loading], tuple[Rating, Any]]) -> bool:
     """Whether a case does any damage."""
     return one[1][0].life_hours is not None
@@ -176,8 +194,9 @@ def _reference_life(cases: Sequence[tuple[float, Scene, Loading, Array | None]],
     if len(against) > 1:
         limit = "must have rings that turn against the load in the same way in all cases: rate them apart"
         raise InputError.of("spectrum", len(cases), limit)
-    total = np.zeros_like(cases[0][2].lamina_loads)
+    total = np.zeros((2, scene.bearing.n_rollers, lamina.LAMINAS))
     for share, _, loading, factor in cases:
+        assert loading.lamina_loads is not None
         part = np.maximum(loading.lamina_loads, 0.0) ** 4 / (1.0 if factor is None else factor)
         total += share * abs(loading.speed_rpm) / speed * part
     found = lamina.LaminaLoads.of(total**0.25, contact_ratings(scene), turning=against.pop())

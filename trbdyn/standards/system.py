@@ -4,16 +4,29 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from trbdyn.base.shown import Shown
-from trbdyn.standards.sheet import LIVES, WHICH_LIFE, Fitted, Loading, Rating, at_equilibrium, life_text, sheet
+from trbdyn.model.scene import Scene
+from trbdyn.standards.loading import Loading, at_equilibrium, changes
+from trbdyn.standards.sheet import LIVES, WHICH_LIFE, Fitted, Rating, life_text, sheet
 from trbdyn.standards.spectrum import SpectrumRating
 from trbdyn.statics.assembly import BearingOnShaft, ShaftEquilibrium
 
+ROWS_OF_ISO_281: Final = 27.0 / 20.0
+"""Exponent e with which rows of equal loads live i^(-1/e) times as long as one: that of C = i^(7/9) C1 and P = i P1 in
+L = (C/P)^(10/3) (ISO 281:2007, 7.1)."""
 WEIBULL_SLOPE: Final = 9.0 / 8.0
-"""Slope of the distribution of lives of roller bearings: ISO/TR 1281-1:2008."""
+"""The same where life goes with the fourth power of load, as in ISO 16281: the slope of the distribution of lives of roller
+bearings, ISO/TR 1281-1:2008, from which i^(7/9) comes."""
+SLOPES: Final = {
+    "life_hours": ROWS_OF_ISO_281,
+    "modified_life_hours": ROWS_OF_ISO_281,
+    "reference_life_hours": WEIBULL_SLOPE,
+    "modified_reference_life_hours": WEIBULL_SLOPE,
+}
+"""Exponents of the lives of a sheet."""
 
 
 @dataclass(frozen=True)
@@ -61,24 +74,31 @@ class SystemRating(Fitted):
         )
 
 
-def system_life(lives: Sequence[float | None]) -> float | None:
-    """Life that all of some bearings reach with the same reliability: (sum L^-e)^(-1/e), e = 9/8; None: infinite.
+def system_life(lives: Sequence[float | None], slope: float) -> float | None:
+    """Life that all of some bearings or rows reach with the same reliability: (sum L^-e)^(-1/e) with the slope e; None: infinite.
 
-    Reliabilities multiply, and each is exp(-(L/L_c)^e): Weibull's distribution, ISO/TR 1281-1:2008.
+    Reliabilities multiply, and each is exp(-(L/L_c)^e). With the slope `ROWS_OF_ISO_281` equal rows have the life that ISO 281
+    gives by i^(7/9).
 
     Examples
     --------
-    >>> from trbdyn.standards.system import system_life
-    >>> round(system_life([1000.0, 1000.0]))
-    540
+    >>> from trbdyn.standards.system import ROWS_OF_ISO_281, system_life
+    >>> round(system_life([1000.0, 1000.0], ROWS_OF_ISO_281)), round(1000.0 * (2.0 ** (7.0 / 9.0) / 2.0) ** (10.0 / 3.0))
+    (598, 598)
     """
-    total = sum(life**-WEIBULL_SLOPE for life in lives if life is not None and life < math.inf)
-    return float(total ** (-1.0 / WEIBULL_SLOPE)) if total > 0.0 else None
+    total = sum(life**-slope for life in lives if life is not None and life < math.inf)
+    return float(total ** (-1.0 / slope)) if total > 0.0 else None
 
 
 def system_sheet(found: ShaftEquilibrium, **options: Any) -> SystemRating:
     """Sheets of all bearings of a shaft in equilibrium; see `trbdyn.rating`."""
-    return system_of({one.name: sheet(one.scene, loading_of(one), **options) for one in found.bearings})
+    return system_of({name: sheet(scene, one, **options) for name, (scene, one) in loadings_of(found).items()})
+
+
+def loadings_of(found: ShaftEquilibrium) -> dict[str, tuple[Scene, Loading]]:
+    """Scene and loads of each bearing of a shaft in equilibrium, by its name."""
+    said = changes(found.assembly.quantities(), found.time)
+    return {one.name: (one.scene, replace(_loading_of(one), said=said)) for one in found.bearings}
 
 
 def system_of(sheets: Mapping[str, Rating | SpectrumRating]) -> SystemRating:
@@ -88,11 +108,11 @@ def system_of(sheets: Mapping[str, Rating | SpectrumRating]) -> SystemRating:
         found = [getattr(one, life) for one in sheets.values()]
         # a life that cannot be told, though the bearing is loaded and turns
         lacks = any(own is None and one.life_hours is not None for own, one in zip(found, sheets.values(), strict=True))
-        lives[life] = None if lacks else system_life(found)
+        lives[life] = None if lacks else system_life(found, SLOPES[life])
     return SystemRating(bearings=sheets, **lives)
 
 
-def loading_of(one: BearingOnShaft) -> Loading:
+def _loading_of(one: BearingOnShaft) -> Loading:
     """What a bearing's sheet stands on: the loads of the shaft on it, and the laminas where its ring stands."""
     laminas = at_equilibrium(one.scene)
     return Loading(
@@ -100,7 +120,6 @@ def loading_of(one: BearingOnShaft) -> Loading:
         radial_load=one.radial_load,
         speed_rpm=laminas.speed_rpm,
         lamina_loads=laminas.lamina_loads,
-        weights=None,
         largest_pressure=laminas.largest_pressure,
         source="equilibrium of the shaft on its bearings",
     )

@@ -164,6 +164,7 @@ def ring_motion(model: _core.Model, scene: Scene) -> tuple[RingMotion, Equilibri
     not shift it, as they pass through every place in turn. The rollers start in equilibrium with that ring where they
     stand.
     """
+    scene.check_capacity()
     even, angles, time = nominal_angles(scene), start_angles(scene), scene.start.time
     stands = scene.start.displacement if scene.ring == "held" else None
     place = None if stands is None else np.where(scene.ring_is_placed, ring_load(scene, time).displacement, stands)

@@ -221,6 +221,7 @@ def stiffness(subject: Any, *, time: float | None = None) -> Stiffness:
 
 @stiffness.register(Scene)
 def _of_scene(scene: Scene, *, time: float | None = None) -> Stiffness:
+    scene.check_capacity()
     at = scene.start.time if time is None else time
     model, angles = normal_contacts(scene), nominal_angles(scene)
     solver = EquilibriumSolver(model, scene, angles)

@@ -20,6 +20,7 @@ from trbdyn.base.shown import Displayed, Shown, value_text
 from trbdyn.base.validation import Model
 from trbdyn.errors import InputError, Path, join_path
 from trbdyn.model.assembly import Subject
+from trbdyn.model.scene import Scene
 from trbdyn.run.options import RunOptions
 from trbdyn.run.toml_assembly import TABLES as OF_ASSEMBLIES
 from trbdyn.run.toml_assembly import subject_from_dict
@@ -68,8 +69,10 @@ class Base:
             return {"": self.tables}
         return {f"bearings[{index}].": table for index, table in enumerate(bearings) if isinstance(table, dict)}
 
-    def build(self, overrides: Overrides) -> tuple[Subject, RunOptions]:
-        """Scene or assembly, and run options, with overrides put in; an error where a path or a value is wrong."""
+    def build(self, overrides: Overrides, *, held: bool = True) -> tuple[Subject, RunOptions]:
+        """Scene or assembly, and run options, with overrides put in; an error where a path or a value is wrong, or, if it must be
+        held, where one bearing cannot hold its load.
+        """
         made = Base(copy.deepcopy(self.tables), self.whole)
         tables = made.tables
         for prefix, part in made.parts.items():
@@ -80,7 +83,10 @@ class Base:
                     part[table] = {} if kept is None else {"temperature_c": kept}
         for path in sorted(overrides, key=lambda name: (name.count(".") + name.count("["), name)):
             put(tables, path, plain(overrides[path]))
-        return subject_from_dict(tables)
+        subject, run = subject_from_dict(tables)
+        if held and isinstance(subject, Scene):
+            subject.check_capacity()
+        return subject, run
 
 
 def _check_oil(prefix: str, part: Table, overrides: Overrides) -> None:

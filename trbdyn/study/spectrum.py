@@ -71,7 +71,7 @@ def spectrum(
             if key not in OWN_COLUMNS and cell not in (None, "")
         }
         try:
-            subject, _ = made.build(changes)
+            subject, _ = made.build(changes, held=False)
         except InputError as error:
             raise error.under(("cases", index)) from None
         cases.append(LoadCase(name, _number("share", row["share"]), subject))

@@ -288,6 +288,8 @@ class CageRuns:
             built = self.subject.replace(**changes)
             for prefix in built.parts:
                 built = built.with_part(prefix, start=STARTS[start])
+            if isinstance(built, Scene):
+                built.check_capacity()
         except InputError as error:
             return Case(parameters, None, self.options, str(error).splitlines()[0])
         length = turns * 2.0 * np.pi / abs(built.orbit_speed(built.part.start.time))
