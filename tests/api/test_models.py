@@ -231,9 +231,9 @@ class TestScene:
 
     def test_load_at_the_limit(self, rig: Bearing) -> None:
         most = 1000 / math.tan(math.radians(rig.cup_half_angle_deg))
-        Scene(rig, speed_rpm=0, axial_load=1000, radial_load=0.999 * most)
+        Scene(rig, speed_rpm=0, axial_load=1000, radial_load=0.999 * most).check_capacity()
         with pytest.raises(InputError, match="radial_load"):
-            Scene(rig, speed_rpm=0, axial_load=1000, radial_load=1.001 * most)
+            Scene(rig, speed_rpm=0, axial_load=1000, radial_load=1.001 * most).check_capacity()
 
 
 class TestBearing:
