@@ -2,7 +2,7 @@
 rollers vibrate.
 
 python tests/adversary/beside.py guided 2100078              a scene of `adversary.py`, by its kind and seed
-python tests/adversary/beside.py drop 99000025 --duration 15e-3 --like 40      by how much scenes like it are off in the mean
+python tests/adversary/beside.py drop 99000025 --duration 15e-3 --moved 12     by how much moved runs of it are off in the mean
 """
 
 from __future__ import annotations
@@ -63,12 +63,15 @@ def main() -> int:
         "--vibrations", type=float, metavar="TIME", help="vibrations of the rollers up to this time (s), too"
     )
     parser.add_argument(
-        "--like", type=int, metavar="COUNT", help="the loss of scenes like it beside tight runs, and no more"
+        "--moved",
+        type=int,
+        metavar="COUNT",
+        help="losses of the scene, moved a little, beside moved tight runs, and no more",
     )
     args = parser.parse_args()
-    if args.like is not None:
-        off, error = mean_difference(ORDINARY | draw(args.kind, args.seed), losses(args.duration), args.like)
-        print(f"{args.like} scenes like it: {100.0 * off:.2g} +/- {100.0 * error:.2g} % in the mean")
+    if args.moved is not None:
+        off, error = mean_difference(losses(ORDINARY | draw(args.kind, args.seed), args.duration), args.moved)
+        print(f"{args.moved} moved runs: {100.0 * off:.2g} +/- {100.0 * error:.2g} % in the mean")
         return 0
     scene = make(draw(args.kind, args.seed) | ({} if args.damping is None else {"damping": args.damping}))
     print(f"{'':24} {'steps':>8} {'lost (J)':>10} {'energy':>9}  warnings")

@@ -3,9 +3,9 @@
 A run is *right* if its energy adds up and its losses and the speed of its rollers agree with those of a run with a tenth of the
 tolerances of 'reference' and every force exact, *warned* if the program itself said that it is not, *stopped* if the program
 ended it and said why, and *refused* if no run was begun. It is *chance* if its loss is off, but by less than the interval its
-summary states, and scenes like it are right in the mean (`chance`). It is *wrong* if none of this holds, and *hanging* if its
-steps became so small that it would not end. It is *unjudged* where the tight run did not come to its end, so that only its energy
-is known to be right.
+summary states, and runs of the same scene from states that are moved a little are right in the mean (`chance`). It is *wrong*
+if none of this holds, and *hanging* if its steps became so small that it would not end. It is *unjudged* where the tight run did
+not come to its end, so that only its energy is known to be right.
 """
 
 from __future__ import annotations
@@ -211,14 +211,13 @@ def _judge_scene(table: Table) -> Verdict:
     return verdict
 
 
-def losses(duration: float) -> Callable[[Table], tuple[float, float]]:
-    """A function that gives losses of a scene by its own tolerances and by tight ones (J); nan where a run did not end."""
+def losses(table: Table, duration: float) -> Callable[[int], tuple[float, float]]:
+    """A function that gives losses of a moved scene by its own tolerances and by tight ones (J); nan where a run did not end."""
 
-    def both(table: Table) -> tuple[float, float]:
+    def both(number: int) -> tuple[float, float]:
         ways = {"accuracy": table["accuracy"]}, TIGHT
-        found = [
-            bounded_run(trb.Simulation(make(table), **way), duration, MOST_TIGHT_STEPS, watched=False) for way in ways
-        ]
+        sims = [chance.move(trb.Simulation(make(table), **way), number) for way in ways]
+        found = [bounded_run(sim, duration, MOST_TIGHT_STEPS, watched=False) for sim in sims]
         own, tight = (run.asked[0] if run.status == "done" else math.nan for run in found)
         return own, tight
 
@@ -226,20 +225,20 @@ def losses(duration: float) -> Callable[[Table], tuple[float, float]]:
 
 
 def by_chance(off: float, error: float) -> bool:
-    """Whether scenes like one are right in the mean, and this is known well enough."""
+    """Whether moved runs of a scene are right in the mean, and this is known well enough."""
     return abs(off) <= error and abs(off) + error <= LOSS
 
 
 def _look_for_chance(table: Table, duration: float, verdict: Verdict) -> None:
-    """It is chance where the summary's interval is as wide, and scenes like this show no bias of the tolerances."""
+    """It is chance where the summary's interval is as wide, and moved runs of this scene show no bias of the tolerances."""
     ways = {"accuracy": table["accuracy"]}, TIGHT
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         own, tight = (trb.Simulation(make(table), **way).run(duration=duration) for way in ways)
         if not chance.within_its_interval(own, tight):
             return
-        off, error = chance.mean_difference(table, losses(duration))
-    verdict.broken.append(f"scenes like it: {100.0 * off:.2g} +/- {100.0 * error:.2g} % in the mean")
+        off, error = chance.mean_difference(losses(table, duration))
+    verdict.broken.append(f"moved runs: {100.0 * off:.2g} +/- {100.0 * error:.2g} % in the mean")
     if by_chance(off, error):
         verdict.status = "chance"
 
