@@ -18,6 +18,7 @@
 #   make mutate     small faults put into a copy of the sources: how many do the tests notice? (COUNT=250 MINUTES=90 SEED=1)
 #   make count      how many lines the sources have, by folder
 #   make walk       which files of csrc a right-hand side passes through, with the functions of each (gcc and gcov)
+#   make core       libtrbdyn without Python, installed in build/core, and the example in C compiled with it and run
 #   make install    only the environment and the package
 #   make clean      remove what was built; make distclean: .venv too
 #
@@ -48,7 +49,7 @@ DEFINES := -C cmake.define.TRB_WERROR=$(WERROR) -C cmake.define.TRB_BUILD_TESTS=
 
 export MPLBACKEND := Agg
 
-.PHONY: count walk cross demo site docs figures wheels test lint format bench stability notebooks fuzz sanitize mutate adversary install clean distclean
+.PHONY: core count walk cross demo site docs figures wheels test lint format bench stability notebooks fuzz sanitize mutate adversary install clean distclean
 .NOTPARALLEL:
 
 demo: install
@@ -122,6 +123,16 @@ walk: install
 	@$(PY) .ci/walk.py
 
 install: build/.package
+
+core: $(VENV)/.tools
+	@$(VENV)/bin/cmake -S csrc -B build/core-build -G Ninja -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(VENV)/bin/ninja \
+	  -DTRB_BUILD_MODULE=OFF -DTRB_WERROR=$(WERROR) -DCMAKE_INSTALL_PREFIX=$(CURDIR)/build/core -DPython_ROOT_DIR=$(CURDIR)/$(VENV) >build/core.log
+	@$(VENV)/bin/cmake --build build/core-build >>build/core.log || { tail -20 build/core.log; exit 1; }
+	@$(VENV)/bin/cmake --install build/core-build >>build/core.log
+	@$(VENV)/bin/cmake -S examples/c -B build/core-example -G Ninja -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(VENV)/bin/ninja \
+	  -DCMAKE_PREFIX_PATH=$(CURDIR)/build/core >>build/core.log
+	@$(VENV)/bin/cmake --build build/core-example >>build/core.log || { tail -20 build/core.log; exit 1; }
+	@build/core-example/orbit
 
 cross:
 	.ci/cross

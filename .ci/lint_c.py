@@ -16,7 +16,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 CSRC = ROOT / "csrc"
-ORDER = ["base", "laws", "surface", "bearing", "body", "contact", "system", "motion", "stepping", "python"]
+ORDER = ["base", "laws", "surface", "bearing", "body", "contact", "system", "motion", "stepping", "api", "python"]
 SUNDIALS_HEADERS = re.compile(r"(sundials|cvodes?|arkode|kinsol|idas?|nvector|sunmatrix|sunlinsol|sunnonlinsol)/")
 CALLS = "v?f?printf|f?puts|putchar|perror|exit|_Exit|_exit|quick_exit|abort|system"
 FORBIDDEN = re.compile(rf"\b((?:{CALLS})\s*\(|(?:stdout|stderr)\b)")
@@ -112,7 +112,7 @@ def check_objects(build: Path) -> list[str]:
     objects = [
         file
         for file in sorted(build.rglob("*.o"))
-        if re.search(r"CMakeFiles/(trbdyn_core|trb_kernel_\w+|_core)\.dir", str(file))
+        if re.search(r"CMakeFiles/(trbdyn_core|trb_kernel_\w+|_core|trbdyn)\.dir", str(file))
     ]
     if not objects:
         return [f"{build}: holds no object files; build first"]

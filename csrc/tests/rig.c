@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "api/case.h"
 #include "contact/kernels.h"
 #include "motion/equilibrium.h"
 
@@ -52,46 +53,12 @@ trb_params rig_cylinder(void)
   return p;
 }
 
-static void put(double *to, trb_vec3 v) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
-
-static void box(trb_face *f, double u0, double u1, double v0, double v1)
-{
-  const double outline[8] = {u0, v0, u1, v0, u1, v1, u0, v1};
-  f->n_vertices[0] = 4;
-  for (int i = 0; i < 8; i++) f->outline[i] = outline[i];
-}
-
 void rig_faces(const trb_params *p, trb_face faces[RIG_FACES])
 {
-  const double   radial = 0.25e-3, around = 0.12e-3, axial = 0.4e-3, half = 0.5 * p->effective_length;
-  trb_geometry   g;
+  const trb_case c = {.params = *p,
+                      .own = {[TRB_CASE_play_radial] = 0.25e-3, [TRB_CASE_play_circumferential] = 0.12e-3, [TRB_CASE_play_axial] = 0.4e-3}};
   trb_message    message;
-  const trb_face none = {.pocket = {-1}, .stiffness_factor = {1}, .friction_factor = {1}};
-  need(trb_geometry_derive(p, &g, &message), &message);
-  const double sn = sin(g.roller_half_angle), cn = cos(g.roller_half_angle), cm = cos(g.roller_axis_angle), ratio = around / radial;
-  const double lean = atan2(ratio, cm) + asin(sn / cn * sin(g.roller_axis_angle) / hypot(cm, ratio)), gap = around * cn * cos(lean);
-  for (int i = 0; i < 2; i++) {
-    const trb_vec3 m = trb_v(sin(lean), (i == 0 ? 1 : -1) * cos(lean), 0), a = trb_v(0, 0, 1);
-    const trb_vec3 outward = trb_axpy(trb_scale(cn, m), -sn, a), along = trb_axpy(trb_scale(cn, a), sn, m);
-    faces[i] = none;
-    faces[i].slot[0] = i;
-    put(faces[i].origin, trb_axpy(trb_scale(0.5 * p->roller_diameter, m), gap, outward));
-    put(faces[i].u, along);
-    put(faces[i].v, trb_cross(trb_scale(-1, outward), along));
-    box(&faces[i], -half, half, -1.5e-3, 1.5e-3);
-  }
-  faces[2] = none;
-  faces[2].slot[0] = 2, faces[2].part[0] = TRB_PART_LARGE_END;
-  put(faces[2].origin, trb_v(0, 0, g.sphere_centre - g.apex_to_mid + sqrt(g.sphere_radius * g.sphere_radius - 1.5e-3 * 1.5e-3)));
-  put(faces[2].u, trb_v(0, 1, 0));
-  put(faces[2].v, trb_v(1, 0, 0));
-  box(&faces[2], -6e-3, 6e-3, 1.5e-3, 4.5e-3);
-  faces[3] = none;
-  faces[3].slot[0] = 3, faces[3].part[0] = TRB_PART_SMALL_END;
-  put(faces[3].origin, trb_v(0, 0, g.small_end_station - axial));
-  put(faces[3].u, trb_v(1, 0, 0));
-  put(faces[3].v, trb_v(0, 1, 0));
-  box(&faces[3], 1.5e-3, 4.5e-3, -4.9e-3, 4.9e-3);
+  need(trb_case_faces(&c, faces, &message), &message);
 }
 
 trb_model *rig_model(const trb_params *params)
