@@ -25,7 +25,7 @@ import common
 import numpy as np
 
 import trbdyn as trb
-from trbdyn.results.confidence import AVERAGES
+from trbdyn.results.numbers import averages
 
 COLUMNS = {
     "scene": "text: name",
@@ -79,11 +79,11 @@ def ended(runs: Sequence[dict[str, Any]], turns: float) -> list[dict[str, Any]]:
 def judge(scene: str, end: str, long: dict[str, Any], runs: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     """A row for each average of a scene."""
     rows = []
-    for name in AVERAGES:
-        own = (long["confidence"] or {}).get(name, math.nan)
+    for name in averages():
+        own = long.get("confidence", {}).get(name, math.nan)
         if long.get(name) is None or math.isnan(own):
             continue
-        told = [(run[name], run["confidence"][name]) for run in runs if name in (run["confidence"] or {})]
+        told = [(run[name], run["confidence"][name]) for run in runs if name in run.get("confidence", {})]
         held = sum(abs(value - long[name]) <= math.hypot(half, own) for value, half in told)
         rows.append(
             {

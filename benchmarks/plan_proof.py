@@ -26,8 +26,7 @@ import common
 import numpy as np
 
 import trbdyn as trb
-from trbdyn.results.confidence import confidence
-from trbdyn.results.summary import averages
+from trbdyn.results import numbers
 from trbdyn.study.planning import Plan
 from trbdyn.study.planning.candidates import TRUE_NODES, numerics
 
@@ -183,7 +182,7 @@ def proof(name: str, effort: float = EFFORT, truth_most_s: float = TRUTH_S) -> l
     length = min(begun + LONGER * plan.duration, max(truth_most_s / rate, 2.0 * plan.duration))
     truth_s, true = _timed(plan, everything, "reference", length)
     window = true.window(float(true["time"][0]) + max(min(begun, 0.5 * length), 0.25 * length))
-    values, widths = averages(window), confidence(window, averages)[0] or {}
+    values, widths = numbers.all_averages(window), numbers.half_widths(window)
     rows = []
     for wanted, wish in want.items():
         value = float(values[wanted])

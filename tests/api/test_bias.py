@@ -123,7 +123,7 @@ def test_loads_that_do_not_drop_have_no_band():
     rise = trb.History.ramp(0.0, 2e-3, 3000.0, 4000.0)
     for load in (3000.0, rise):
         result = trb.Simulation(scene_30310(3000.0, load, ring="follows"), accuracy="fast").run(duration=3e-3)
-        assert result.summary()["pocket_force_peak_low"] is None
+        assert "pocket_force_peak_low" not in result.summary()
 
 
 def test_nothing_is_said_of_tolerances_that_were_not_measured():

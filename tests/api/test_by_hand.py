@@ -88,7 +88,7 @@ def test_every_average_is_that_of_the_window(late: tuple[Any, Result, NDArray[np
     for side in ("outer", "inner", "rib"):
         load, film = column(f"{side}_load"), column(f"{side}_film_parameter")
         assert values[f"{side}_load_mean"] == pytest.approx(load.mean())
-        assert values[f"{side}_pressure_max"] is None, "extremes are those of the steps, not of the records"
+        assert f"{side}_pressure_max" not in values, "extremes are those of the steps, not of the records"
         weighted = float((film * load).sum() / load.sum())
         assert values[f"film_parameter_{side}"] == pytest.approx(weighted)
         assert weighted < 0.6 * film.mean(), "the plain mean is another one"
@@ -289,7 +289,7 @@ def test_wall_time_of_a_turn_is_what_the_statistics_tell(
 ) -> None:
     """That of stepping, which the run measured; only where it did not, the whole wall time over the turns."""
     result = synthetic.result(whirling.scene, stats=stats)
-    found = result.summary()["wall_s_per_revolution"]
+    found = result.summary().get("wall_s_per_revolution")
     assert found == (None if wanted is None else pytest.approx(wanted))
 
 

@@ -10,6 +10,7 @@ from random_scenes import ORDINARY, draw, make
 
 import trbdyn as trb
 from trbdyn.errors import InputError
+from trbdyn.results.numbers import TABLE
 from trbdyn.run.check import CLEAR, judged
 from trbdyn.run.repeat import Piece, Repeating, Sample, pieces
 
@@ -78,7 +79,7 @@ def test_a_quiet_run_is_clear_and_the_check_agrees_with_a_tight_run(run: trb.Res
 
 
 def test_a_long_run_is_checked_in_pieces_from_its_states(run: trb.Result) -> None:
-    repeating = Repeating(run, ("torque", "power_loss"))
+    repeating = Repeating(run, [TABLE["torque"], TABLE["power_loss"]])
     chosen = list(pieces(repeating, 0.4 * DURATION))
     assert len(chosen) > 3
     for piece in chosen:
@@ -94,7 +95,7 @@ def test_a_long_run_is_checked_in_pieces_from_its_states(run: trb.Result) -> Non
 def test_a_jump_has_a_piece_of_its_own() -> None:
     load = trb.History(times=(0.0, 0.008, 0.009, 0.02), values=(4000.0, 4000.0, 9000.0, 9000.0))
     result = trb.Simulation(scene(axial_load=load, ring="follows"), accuracy="fast").run(duration=DURATION)
-    chosen = list(pieces(Repeating(result, ("torque",)), 1e-3))
+    chosen = list(pieces(Repeating(result, [TABLE["torque"]]), 1e-3))
     assert any(piece.begin < 0.008 and piece.until > 0.009 for piece in chosen)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, ClassVar
@@ -16,9 +16,10 @@ from scipy.signal import lfilter
 import trbdyn as trb
 from trbdyn import observables
 from trbdyn.model.cases import paper_30310
-from trbdyn.results.confidence import AVERAGES, _as_means, confidence
-from trbdyn.results.quantities import QUANTITIES
-from trbdyn.results.summary import averages, table
+from trbdyn.results import numbers
+from trbdyn.results.confidence import confidence
+from trbdyn.results.number import Number
+from trbdyn.results.summary import table
 from trbdyn.run.until import Until
 from trbdyn.run.watch import Watch
 
@@ -111,11 +112,11 @@ def test_turns_of_the_cage_are_whole() -> None:
     """A signal that repeats itself in each turn has no error, however the window is cut."""
     time = np.arange(2000) * 1e-3
     made = MadeUp(time, np.cos(2.0 * math.pi * time / 0.05), np.ones(2000), turn=0.05)
-    widths, words = confidence(made, MadeUp.averages)  # type: ignore[arg-type]
+    widths, words = confidence(made, ROWS, MadeUp.averages)  # type: ignore[arg-type]
     assert widths is not None
     assert widths["power_loss"] < 1e-3
     assert "39 batches of 1 turns of the cage" in words
-    widths, words = confidence(made.window(1.3, 2.0), MadeUp.averages)  # type: ignore[arg-type]
+    widths, words = confidence(made.window(1.3, 2.0), ROWS, MadeUp.averages)  # type: ignore[arg-type]
     assert widths is None
     assert "the window has 13 turns of the cage, and it takes 16" in words
 
@@ -125,11 +126,11 @@ def test_the_summary_says_which_averages_drift() -> None:
     time = np.arange(2000) * 1e-3
     rng = np.random.default_rng(2)
     made = MadeUp(time, rng.normal(size=2000), 1.0 + 0.05 * time + 0.01 * rng.normal(size=2000), turn=0.02)
-    widths, words = confidence(made, MadeUp.averages)  # type: ignore[arg-type]
+    widths, words = confidence(made, ROWS, MadeUp.averages)  # type: ignore[arg-type]
     assert widths is not None
     assert set(widths) == {"power_loss"}
     assert "none for what drifts in the window: torque;" in words
-    widths, words = confidence(made, MadeUp.averages, "it creeps")  # type: ignore[arg-type]
+    widths, words = confidence(made, ROWS, MadeUp.averages, "it creeps")  # type: ignore[arg-type]
     assert widths is not None
     assert set(widths) == {"power_loss"}
     assert "none for the cage's motion, which is not known to have settled: it creeps" in words
@@ -149,7 +150,7 @@ def lingering_whirls(rng: np.random.Generator, cages: int, turns: int, records: 
 
 
 class Locus:
-    """The place of a cage, as `_as_means` reads it."""
+    """The place of a cage, as the series of its percentiles read it."""
 
     groups = ("cage",)
     has_cage = True
@@ -172,7 +173,9 @@ def test_percentiles_of_the_orbit_follow_its_mean_place() -> None:
     for name, most in (("orbit_radius_over_cpr", 0.99), ("axis_distance_over_cpr", 1.0)):
         for share, end in ((0.05, "p05"), (0.95, "p95")):
             found = np.array([np.quantile(getattr(cage, name), share) for cage in cages])
-            series = [_as_means(cage)[f"{name}_{end}"].reshape(40, -1) for cage in cages]  # type: ignore[arg-type]
+            as_mean = numbers.TABLE[f"{name}_{end}"].series
+            assert as_mean is not None
+            series = [as_mean(cage).reshape(40, -1) for cage in cages]  # type: ignore[arg-type]
             widths = np.array([observables.half_width(batches.mean(axis=1)) for batches in series])
             assert np.isfinite(widths).mean() > 0.9
             assert 0.90 <= np.mean(np.abs(found - found.mean()) <= widths) <= most, (name, end)
@@ -201,8 +204,11 @@ class MadeUp:
         inside = (self.of["time"] >= start) & (self.of["time"] <= stop)
         return MadeUp(*(self.of[name][inside] for name in ("time", "power_loss", "torque")), turn=self.turn)
 
-    def averages(self) -> dict[str, float]:
-        return {name: float(self.of[name].mean()) for name in ("torque", "power_loss")}
+    def averages(self, rows: Iterable[Number]) -> dict[str, float]:
+        return {row.name: float(self.of[row.name].mean()) for row in rows}
+
+
+ROWS = [numbers.TABLE[name] for name in ("torque", "power_loss")]
 
 
 @pytest.mark.slow
@@ -217,12 +223,14 @@ def test_the_summary_of_a_run_has_error_bars_that_later_windows_keep() -> None:
     result = trb.Simulation(scene, accuracy="fast").run(duration=2.0, save_every=1e-3)
     values = result.summary()
     widths = values["confidence"]
-    assert set(widths) <= set(AVERAGES) <= set(QUANTITIES)
+    assert set(widths) <= set(numbers.averages())
     assert {"torque", "pocket_duty", "orbit_rms_over_cpr", "cage_speed_ratio"} <= set(widths)
     assert "batches" in values["confidence_note"]
     assert f"± {widths['torque']:.2g}" in table(values)
     middle = 0.5 * (values["window_start"] + values["window_end"])
-    halves = [averages(result.window(values["window_start"], middle)), averages(result.window(middle))]
+    halves = [
+        numbers.all_averages(part) for part in (result.window(values["window_start"], middle), result.window(middle))
+    ]
     for name in ("torque", "pocket_duty"):
         one, other = (half[name] for half in halves)
         assert abs(one - other) <= 4.0 * widths[name], name
@@ -232,7 +240,7 @@ def test_the_summary_of_a_run_has_error_bars_that_later_windows_keep() -> None:
 def test_a_short_run_has_none_and_says_why() -> None:
     result = trb.Simulation(paper_30310(3000.0, 4930.0)).run(duration=3e-3, save_every=1e-4)
     values = result.summary()
-    assert values["confidence"] is None
+    assert "confidence" not in values
     assert "it takes 16 turns" in values["confidence_note"]
     assert "±" not in table(values).replace("behind ±", "")
 
@@ -262,7 +270,7 @@ def test_a_run_ends_when_averages_are_known_as_well_as_was_asked_for(enough: trb
     looks = Until(UNTIL, 1 + math.ceil(4.0 / (enough.time[1] - enough.time[0]) - 1e-6))._looks
     place = looks.index(len(enough))
     earlier = enough.window(stop=enough.time[looks[place - 2] - 1]).summary()
-    widths = earlier["confidence"] or {}
+    widths = earlier.get("confidence", {})
     assert any(widths.get(name, math.inf) > share * abs(earlier[name]) for name, share in UNTIL.items())
 
 

@@ -157,7 +157,7 @@ def test_nothing_is_said_of_a_cage_that_is_not_there(whirling: Result) -> None:
         with pytest.raises(InputError, match="has no cage"):
             read()
     values = whirling.summary()
-    assert values["orbit_rms_over_cpr"] is None
+    assert "orbit_rms_over_cpr" not in values
     assert values["torque"] == pytest.approx(1.25, rel=1e-2)
 
 
@@ -734,9 +734,9 @@ def test_a_summary_is_written(tmp_path: Path, whirling: Result) -> None:
 def test_summary_leaves_out_what_was_not_recorded(whirling: Result) -> None:
     values = whirling.select(["torque"]).summary()
     assert values["torque"] == pytest.approx(1.25, rel=1e-2)
-    assert values["orbit_rms_over_cpr"] is None
+    assert "orbit_rms_over_cpr" not in values
     assert (values["settling"], values["settled"]) == ("unknown", False)
-    assert values["energy_closure"] is None
+    assert "energy_closure" not in values
     assert json.dumps(values, allow_nan=False)
 
 
@@ -789,11 +789,11 @@ def test_a_law_outside_of_its_range_says_so() -> None:
     note = result.summary()["rolling_note"]
     assert "zhou_hoeprich" in note
     assert "100 % of the loaded contacts lie outside, W is 5e-05 to " in note
-    assert trb.Simulation(default).run(duration=2e-3).summary()["rolling_note"] is None
+    assert "rolling_note" not in trb.Simulation(default).run(duration=2e-3).summary()
     tilted = default.replace(misalignment_x=3e-4)
     assert "tilted ring" in trb.Simulation(tilted).run(duration=2e-3).summary()["rolling_note"]
     oil = default.lubricant.replace(pressure_coefficient=3e-8, pressure_law="barus", dicke=None)
     cold = trb.Simulation(default.replace(lubricant=oil)).run(duration=2e-3, save_groups=("cage", "rollers", "torque"))
     assert "G = alpha0 E' is 6791" in cold.summary()["rolling_note"]
     inside = trb.cases.scene_30310(3000.0, 15_000.0).replace(effects=other.effects)
-    assert trb.Simulation(inside).run(duration=2e-3, save_every=1e-4).summary()["rolling_note"] is None
+    assert "rolling_note" not in trb.Simulation(inside).run(duration=2e-3, save_every=1e-4).summary()

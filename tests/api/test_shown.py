@@ -11,7 +11,7 @@ import pytest
 
 import trbdyn as trb
 from trbdyn.base.shown import Displayed, Shown
-from trbdyn.results.quantities import QUANTITIES
+from trbdyn.results.numbers import TABLE
 from trbdyn.study.what_matters import Influence, Sensitivity
 
 
@@ -88,7 +88,7 @@ def test_a_simulation_and_a_result_show_what_they_are(simulation: trb.Simulation
     assert ["accuracy", "fast"] in [row[:2] for row in shown]
     assert "2000 rpm" in repr(simulation)
     shown = cells(result)
-    words, unit, _ = QUANTITIES["torque"]
+    words, unit = TABLE["torque"].words, TABLE["torque"].unit
     found = [row[:3] for row in shown if row[0] == words]
     assert found[0][1].split(" ±")[0] == f"{result.summary()['torque']:.5g}"
     assert found[0][2] == unit

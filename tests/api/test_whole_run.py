@@ -65,4 +65,4 @@ def test_report_and_summary_have_the_same_numbers(spike: trb.Result, tmp_path: P
 
 def test_a_constant_run_changes_nothing() -> None:
     result = trb.Simulation(trb.cases.scene_30310(), accuracy="fast").run(duration=0.01)
-    assert result.summary()["changing"] is None
+    assert "changing" not in result.summary()

@@ -31,6 +31,7 @@ AREAS: dict[str, tuple[float, list[str]]] = {
             "trbdyn/plot/*.py",
             "trbdyn/results/derived.py",
             "trbdyn/results/summary.py",
+            "trbdyn/results/rows/*.py",
             "trbdyn/results/result.py",
             "trbdyn/results/peaks.py",
         ],

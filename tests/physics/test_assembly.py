@@ -263,7 +263,7 @@ def test_records_are_evaluated_again() -> None:
                 largest = np.abs(one[name][-1]).max()
                 assert again[name] == pytest.approx(one[name][-1], abs=1e-5 * largest + 1e-12), name
         assert again["inner_torque"] == pytest.approx(one["inner_torque"][-1], rel=1e-4)
-        assert one.summary()["basic_life_hours"] is None  # its scene does not know what the shaft carries
+        assert "basic_life_hours" not in one.summary()  # its scene does not know what the shaft carries
     rated = trb.rating(result["left"])
     carried = np.linalg.norm(result["left"].ring_force[len(result.time) // 2 :, :2], axis=1).mean()
     assert rated.radial_load == pytest.approx(carried, rel=0.1)

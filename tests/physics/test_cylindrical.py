@@ -293,8 +293,8 @@ def test_records_of_the_outer_ribs() -> None:
     assert 16 * told["outer_front_rib_load_mean"] == pytest.approx(500.0, rel=0.05)
     assert told["outer_front_rib_pressure_max"] == own.window().peaks["outer_front_rib_pressure_peak"].max() > 5e7
     assert 1.0 < told["film_parameter_outer_front_rib_min"] <= told["film_parameter_outer_front_rib"]
-    assert told["outer_rib_load_mean"] is told["front_rib_pressure_max"] is None  # which carry nothing
-    assert other.summary()["outer_rib_load_mean"] is None
+    assert not {"outer_rib_load_mean", "front_rib_pressure_max"} & set(told)  # which carry nothing
+    assert "outer_rib_load_mean" not in other.summary()
 
 
 def test_the_rating_is_that_of_a_radial_bearing() -> None:
@@ -353,7 +353,7 @@ def test_a_rib_that_is_not_there_carries_no_film() -> None:
     for rib in ("rib", "front_rib"):
         assert np.isnan(result[f"{rib}_film_parameter_min"]).all()
     summary = result.summary()
-    assert summary["film_parameter_rib"] is None
+    assert "film_parameter_rib" not in summary
     assert not np.isfinite(summary["film_parameter_rib_min"] or math.nan)
     tapered = trb.Simulation(trb.Scene(trb.cases.rig_30310(), speed_rpm=3000.0, axial_load=4930.0))
     with pytest.raises(trb.InputError, match="does not have: outer ring's rib"):

@@ -194,8 +194,8 @@ def test_what_needs_a_cage_is_refused_by_name() -> None:
     with pytest.raises(InputError, match="rollers_and_cage"):
         trb.plan(scene, {"orbit_rms_over_cpr": 0.1})
     result = Simulation(scene).run(revolutions=0.2)
-    assert result.summary()["pocket_force_peak"] is None
-    assert result.summary()["orbit_rms_over_cpr"] is None
+    assert "pocket_force_peak" not in result.summary()
+    assert "orbit_rms_over_cpr" not in result.summary()
     with pytest.raises(InputError, match="has no cage"):
         trb.plot.cage_locus(result)
 

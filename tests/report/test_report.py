@@ -18,7 +18,7 @@ from trbdyn.reporting import converter
 from trbdyn.reporting.captions import CAPTIONS
 from trbdyn.reporting.inputs import rows
 from trbdyn.reporting.verdict import verdict
-from trbdyn.results.quantities import QUANTITIES
+from trbdyn.results.numbers import TABLE
 from trbdyn.run import estimate
 from trbdyn.run.bias import Bias, biases
 
@@ -56,7 +56,7 @@ def cells(text: str, words: str) -> list[str]:
 def test_numbers_units_and_meanings(text: str, result: trb.Result) -> None:
     values = result.summary()
     for key in ("torque", "outer_load_mean", "film_parameter_inner", "pocket_force_peak", "power_loss"):
-        words, unit, _ = QUANTITIES[key]
+        words, unit = TABLE[key].words, TABLE[key].unit
         number, shown_unit, meaning = cells(text.partition("<summary>All numbers")[2], words)
         assert float(number.split(" ±")[0]) == pytest.approx(values[key], rel=1e-3)
         assert shown_unit == unit
@@ -66,7 +66,7 @@ def test_numbers_units_and_meanings(text: str, result: trb.Result) -> None:
 
 
 def test_every_entry_of_the_summary_and_every_picture_has_its_sentence() -> None:
-    assert all(quantity.meaning.endswith(".") for quantity in QUANTITIES.values())
+    assert all(quantity.meaning.endswith(".") for quantity in TABLE.values())
     assert set(PICTURES) <= set(CAPTIONS)
 
 
@@ -168,16 +168,16 @@ def test_films_have_one_limit_in_sentences_and_pictures(result: trb.Result) -> N
         if len(set(line.get_ydata())) == 1 and len(line.get_ydata()) == 2
     ]
     assert result.scene.effects.friction.lambda_full in marked
-    assert "above 3" not in " ".join([*(quantity.meaning for quantity in QUANTITIES.values()), *CAPTIONS.values()])
+    assert "above 3" not in " ".join([*(quantity.meaning for quantity in TABLE.values()), *CAPTIONS.values()])
 
 
 def test_the_bias_of_the_accuracy_is_said_where_it_was_measured(usual: trb.Result, tmp_path: Path) -> None:
     """Each number whose bias stands in the table of accuracy has it in its row, whatever its name."""
     listed = biases(usual)
-    assert set(listed) <= set(QUANTITIES)
+    assert set(listed) <= set(TABLE)
     assert "pocket_force_p95" in listed
     text = trb.report(usual, tmp_path / "r.html", pictures=["cage_locus"]).read_text(encoding="utf-8")
-    said = cells(text, QUANTITIES["pocket_force_p95"].words)[-1]
+    said = cells(text, TABLE["pocket_force_p95"].words)[-1]
     assert html.escape(str(listed["pocket_force_p95"])) in said
     assert str(Bias(-0.08, 0.04, "fast", "")) == "With accuracy 'fast' it is 4 to 12 % too low."
     assert str(Bias(0.38, 0.08, "fast", "")) == "With accuracy 'fast' it is 30 to 46 % too high."

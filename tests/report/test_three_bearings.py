@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn.results.quantities import QUANTITIES
+from trbdyn.results.numbers import TABLE
 
 pytestmark = pytest.mark.slow
 
@@ -48,12 +48,12 @@ def test_each_number_of_the_report_is_that_of_the_summary(result: trb.Result, tm
     shown = re.findall(r"<td class='q'>(.*?)</td><td[^>]*>(.*?)</td><td class='u'>(.*?)</td>", table)
     left = [(html.unescape(words), number.split(" ±")[0], unit) for words, number, unit in shown]
     compared = 0
-    for name, (words, _, _) in QUANTITIES.items():
+    for name, row in TABLE.items():
         value = values.get(name)
         if not isinstance(value, float):
             continue
         for k, (said, number, unit) in enumerate(left):
-            if said == words.strip():
+            if said == row.words.strip():
                 if not number.startswith("&gt;"):
                     assert float(number) * SCALES.get(unit, 1.0) == pytest.approx(value, rel=1e-3), name
                 compared += 1
@@ -135,8 +135,8 @@ def test_a_ramp_says_that_it_is_one(scene: trb.Scene) -> None:
     values = short(scene, speed_rpm=speed, ring="follows").summary()
     assert values["changing"] == f"speed 0 to {SPEED:g} rpm"
     assert values["film_parameter_inner_min"] < 0.3 * values["film_parameter_inner"]
-    assert values["basic_life_hours"] is None
-    assert values["static_safety"] is None
+    assert "basic_life_hours" not in values
+    assert "static_safety" not in values
 
 
 def test_a_spike_of_load_is_a_peak(scene: trb.Scene) -> None:
@@ -148,7 +148,7 @@ def test_a_spike_of_load_is_a_peak(scene: trb.Scene) -> None:
     still = trb.Simulation(heavy).contacts()["raceway_pressure"].max()
     assert max(values["inner_pressure_max"], values["outer_pressure_max"]) == pytest.approx(still, rel=0.08)
     assert 0.003 < values["inner_pressure_max_time"] < 0.008
-    assert values["static_safety"] is None
+    assert "static_safety" not in values
     assert trb.rating(result).static_safety == pytest.approx(trb.rating(heavy).static_safety, rel=1e-6)
 
 

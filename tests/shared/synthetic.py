@@ -163,6 +163,8 @@ class StubScene:
     )
     ring_body = housing = elastic_cage = None
     effects = SimpleNamespace(
+        guidance="rollers",
+        oil_fill=0.0,
         bodies="rollers_and_cage",
         has_cage=True,
         films=True,

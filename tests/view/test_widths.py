@@ -10,7 +10,7 @@ import pytest
 
 import trbdyn as trb
 from trbdyn.reporting import converter, save_pdf
-from trbdyn.results.quantities import QUANTITIES
+from trbdyn.results.numbers import TABLE
 
 WIDTHS = (420, 1000, 1400)
 
@@ -110,7 +110,7 @@ def test_values_stand_in_the_pdf(long_run: trb.Result, pages: tuple[Path, Path],
     for name in ("torque", "orbit_rms_over_cpr", "pocket_force_peak", "power_loss", "cage_speed_ratio"):
         shown = f"{values[name]:.4g}" + (f" ± {widths[name]:.2g}" if name in widths else "")
         assert shown in text, (name, shown)
-        assert QUANTITIES[name].words.split()[0] in text
+        assert TABLE[name].words.split()[0] in text
     for name in ("torque_note", "confidence_note"):
         assert values[name][1:20] in text
 

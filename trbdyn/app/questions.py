@@ -31,9 +31,6 @@ QUESTIONS: Final[dict[str, Question]] = {
 }
 OF_SHAFT: Final = ("bearing_loads", "shaft_orbits")
 """Pictures of several bearings on a shaft."""
-SWEPT: Final = ("torque", "power_loss", "orbit_rms_over_cpr", "cage_slip", "pocket_force_p95", "outer_load_mean",
-                "film_parameter_outer", "settling")  # fmt: skip
-"""Numbers in the table of a sweep."""
 
 
 def want_of(names: list[str]) -> dict[str, float]:

@@ -16,18 +16,19 @@ from typing import Any, Final, cast
 
 import numpy as np
 
-from trbdyn.app.questions import OF_SHAFT, QUESTIONS, SWEPT, want_of
+from trbdyn.app.questions import OF_SHAFT, QUESTIONS, want_of
 from trbdyn.base.own_files import write_whole
 from trbdyn.errors import InputError, TrbError
 from trbdyn.reporting import report, save_pdf
 from trbdyn.results.assembly import load
-from trbdyn.results.quantities import QUANTITIES
+from trbdyn.results.numbers import find
 from trbdyn.run.case_text import case_text
 from trbdyn.run.options import RunOptions
 from trbdyn.run.rating import rating
 from trbdyn.run.simulation import Simulation
 from trbdyn.run.toml_assembly import subject_from_dict
 from trbdyn.statics.assembly import stiffness
+from trbdyn.study.gather import listed_in
 from trbdyn.study.planning import plan
 from trbdyn.study.runner import run as run_study
 from trbdyn.viewer import view
@@ -191,7 +192,7 @@ def _sweep(
     say(0.0, f"0 of {len(cases)} cases")
     with _Counting(2, len(cases), say) as threads:
         data = run_study([subject_from_dict(tables) for tables in cases], folder / "runs", executor=threads)
-    names = [name for name in SWEPT if name in data]
+    names, bearings = listed_in(data, "page"), data.attrs["bearings"].split()
     rows = [[label, str(data["status"].values[k]), *(_cell(data[name].values[k]) for name in names)]
             for k, label in enumerate(labels)]  # fmt: skip
     drawn = [name for name in names if data[name].dtype.kind == "f" and np.isfinite(data[name].values).any()]
@@ -199,10 +200,10 @@ def _sweep(
         size = (7.0, 2.2 * max(len(drawn), 1))
         figure, axes = plt.subplots(len(drawn) or 1, 1, figsize=size, sharex=True, squeeze=False)
         for name, ax in zip(drawn, axes[:, 0], strict=False):
-            quantity = QUANTITIES.get(name)
-            unit = f" ({quantity.unit})" if quantity is not None and quantity.unit not in ("", "1") else ""
+            number = find(name, bearings)
+            assert number is not None
             ax.plot(labels, data[name].values, marker="o")
-            ax.set_title((quantity.words if quantity is not None else name) + unit, fontsize=9)
+            ax.set_title(f"{number.words} ({number.unit})" if number.unit else number.words, fontsize=9)
         axes[-1, 0].set_xlabel(plain(path))
         save(figure, folder / "sweep.png", overwrite=True)
     return f"{len(rows)} cases", {"head": [path, "status", *names], "rows": rows}

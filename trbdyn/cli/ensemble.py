@@ -10,7 +10,7 @@ from trbdyn.cli.called import command
 from trbdyn.cli.case import subject_with_changes
 from trbdyn.cli.declared import CASE, SET, WORKERS, Options, argument, subcommand
 from trbdyn.cli.outcome import DONE, FAILED, INTERRUPTED, say
-from trbdyn.errors import InputError, unknown_name
+from trbdyn.errors import InputError
 
 
 @subcommand(
@@ -28,10 +28,9 @@ from trbdyn.errors import InputError, unknown_name
     argument("--seed", "of the draws (default: 0)", "N", type=int, default=0),
     argument(
         "--predict",
-        "observables of the summary (default: torque orbit_rms_over_cpr)",
+        "observables of the summary (default: torque and orbit_rms_over_cpr, those that the scene has)",
         "NAME",
         nargs="+",
-        default=["torque", "orbit_rms_over_cpr"],
     ),
     WORKERS,
     argument("-o --output", "results and observables.nc (default: CASE_ensemble)", "FOLDER"),
@@ -42,7 +41,8 @@ def ensemble(options: Options) -> int:
     """Run many designs of a case that are drawn from bands, and tell for each observable its spread, which inputs decide on
     it, and how well designs that were not run can be predicted. The same command goes on with a run that was stopped.
     """
-    from trbdyn.results.quantities import QUANTITIES
+    from trbdyn.results import numbers
+    from trbdyn.study.gather import listed_in
     from trbdyn.study.surrogate import FEWEST_DRAWS, surrogate
     from trbdyn.study.uncertainty import Band, checked_bands, uncertainty
 
@@ -50,9 +50,8 @@ def ensemble(options: Options) -> int:
     bands = checked_bands([Band(path=path, low=low, high=high) for path, low, high in map(_band, options.band)])
     if options.designs < FEWEST_DRAWS:
         raise InputError.of("--designs", options.designs, f"must be at least {FEWEST_DRAWS}")
-    for name in options.predict:  # before the runs, which take long
-        if not any(name == label or name.startswith(f"{label}_") for label in QUANTITIES):
-            raise InputError.of("--predict", name, unknown_name(name, QUANTITIES))
+    for name in options.predict or ():  # before the runs, which take long
+        numbers.check(name, "--predict", bearings=scene.names)
     folder = options.output or f"{Path(options.case).stem}_ensemble"
     try:
         found = uncertainty(
@@ -70,9 +69,10 @@ def ensemble(options: Options) -> int:
         again = command(*options.words)
         say(f"trbdyn: stopped; the designs that are done are kept in {folder}. Go on: {again}", file=sys.stderr)
         return INTERRUPTED
-    found = replace(found, shown=tuple(name for name in options.predict if name in found.spreads))
+    predicted = options.predict or [name for name in listed_in(found.data, "ensemble") if name in found.spreads]
+    found = replace(found, shown=tuple(name for name in predicted if name in found.spreads))
     fits: list[object] = []
-    for name in options.predict:
+    for name in predicted:
         try:
             fits.append(surrogate(found, name, seed=options.seed))
         except InputError as error:  # one that is the same in all runs, say; the others are told nevertheless

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 from trbdyn.cli.called import command
 from trbdyn.cli.declared import Options, argument, subcommand
@@ -12,18 +12,6 @@ from trbdyn.cli.outcome import DONE, FAILED, INTERRUPTED, say
 
 if TYPE_CHECKING:
     import xarray
-
-
-COLUMNS: Final = (
-    "status",
-    "settling",
-    "cage_motion",
-    "orbit_rms_over_cpr",
-    "whirl_ratio",
-    "pocket_force_p95",
-    "torque",
-)
-"""Observables in the table that is printed."""
 
 
 @subcommand(
@@ -70,9 +58,11 @@ def problems(data: xarray.Dataset) -> list[str]:
     ]
 
 
-def table(data: xarray.Dataset, columns: tuple[str, ...] = COLUMNS) -> str:
+def table(data: xarray.Dataset) -> str:
     """Parameters and some observables as a table for people."""
-    shown = [name for name in columns if name in data]
+    from trbdyn.study.gather import listed_in
+
+    shown = ["status", *listed_in(data, "sweep")]
     parameters = [str(dim) for dim in data.dims if dim in data.coords and dim != "case"]
     parameters += [str(name) for name in data.coords if name not in parameters and data[name].dims == ("case",)]
     frame = data[shown].to_dataframe().reset_index()

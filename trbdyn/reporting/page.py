@@ -18,7 +18,7 @@ from trbdyn.reporting.tables import safe
 from trbdyn.reporting.verdict import verdict, warnings
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.result import Result
-from trbdyn.results.summary import ratings
+from trbdyn.results.rows.ratings import RATINGS, of_sheet
 from trbdyn.run.bias import biases
 from trbdyn.standards.sheet import Rating
 
@@ -102,8 +102,8 @@ def _body(results: Sequence[Result], names: Sequence[str], title: str, pictures:
 
 def _with_lives(numbers: dict[str, Any], sheet: Rating | str) -> dict[str, Any]:
     """A summary with the ratings of the run's records where it has none of its own."""
-    known = {} if isinstance(sheet, str) else ratings(sheet)
-    return numbers | {name: value for name, value in known.items() if numbers.get(name) is None}
+    known = {} if isinstance(sheet, str) else {row.name: of_sheet(sheet, row.name) for row in RATINGS}
+    return numbers | {name: value for name, value in known.items() if value is not None and name not in numbers}
 
 
 def _whole(title: str, body: str) -> str:

@@ -8,8 +8,8 @@ from typing import Any
 from trbdyn.errors import InputError, TrbError
 from trbdyn.reporting.tables import safe, table_of
 from trbdyn.results.assembly import AssemblyResult
+from trbdyn.results.number import steady_sheet
 from trbdyn.results.result import Result
-from trbdyn.results.summary import steady_sheet
 from trbdyn.run.rating import rating
 from trbdyn.standards.frequencies import frequencies
 from trbdyn.standards.sheet import WHICH_LIFE, Rating

@@ -13,8 +13,7 @@ from typing import Any, Final
 
 from trbdyn.base.shown import Shown
 from trbdyn.reporting.inputs import Row
-from trbdyn.results.quantities import QUANTITIES
-from trbdyn.results.summary import UNPRINTED
+from trbdyn.results.numbers import rows
 from trbdyn.run.bias import Bias
 from trbdyn.standards.sheet import life_text
 
@@ -87,29 +86,15 @@ def _column(name: str) -> str:
     return {"unit": "u", "where it comes from": "m"}.get(name, "n number")
 
 
-KEY_NUMBERS: Final = (
-    "modified_reference_life_hours",
-    "basic_life_hours",
-    "static_safety",
-    "inner_pressure_max",
-    "film_parameter_inner",
-    "torque",
-    "power_loss",
-    "orbit_rms_over_cpr",
-    "pocket_force_peak",
-    "cage_speed_ratio",
-)
-"""The numbers that stand before those that are folded away, and that are compared."""
-
-
 def comparison(summaries: Sequence[Mapping[str, Any]], names: Sequence[str]) -> str:
     """What changes from the first run to the second, in one sentence."""
     more, less, same = [], [], []
-    for key in KEY_NUMBERS:
+    for row in rows("report"):
+        key = row.name
         first, second = (values.get(key) for values in summaries)
         if not isinstance(first, float) or not isinstance(second, float) or first == 0.0:
             continue
-        words = QUANTITIES[key].words.partition(" (")[0]
+        words = row.words.partition(" (")[0]
         change = difference(first, second, *((values.get("confidence") or {}).get(key) for values in summaries))
         if change.startswith("+"):
             more.append(f"{words} {change}")
@@ -143,12 +128,12 @@ def difference(first: Any, second: Any, first_width: float | None, second_width:
 def key_numbers(summaries: Sequence[Mapping[str, Any]], names: Sequence[str]) -> str:
     """The numbers that are asked for first."""
     body = []
-    for key in KEY_NUMBERS:
+    for row in rows("report"):
+        key = row.name
         values = [entry.get(key) for entry in summaries]
         if any(value is not None for value in values):
-            words, unit, _ = QUANTITIES[key]
             widths = [(entry.get("confidence") or {}).get(key) for entry in summaries]
-            body.append(_number(words, unit, values, widths, None, []))
+            body.append(_number(row.words, row.unit, values, widths, None, []))
     heads = _heads("quantity", *_columns(names), "unit")
     return f"<table>{heads}{''.join(body)}</table>" if body else ""
 
@@ -161,19 +146,20 @@ def numbers(summaries: Sequence[Mapping[str, Any]], names: Sequence[str], biases
     """Every number of the summaries with its interval, unit and meaning; below them the notes."""
     body: list[str] = []
     notes: list[str] = []
-    for key, (words, unit, meaning) in QUANTITIES.items():
+    for row in rows():
+        key, words, unit = row.name, row.words, row.unit
         values = [entry.get(key) for entry in summaries]
         if all(value is None for value in values):
             continue
         if key.endswith(SENTENCES):
             notes += _notes(words, values, names)
-        elif key in UNPRINTED:
+        elif not row.printed:
             continue
         elif any(isinstance(value, Mapping) for value in values):
             body += _parts(words, unit, values)
         else:
             widths = [(entry.get("confidence") or {}).get(key) for entry in summaries]
-            body.append(_number(words, unit, values, widths, meaning, _said(key, values, biases, names)))
+            body.append(_number(words, unit, values, widths, row.meaning, _said(key, values, biases, names)))
     measured = dict.fromkeys(bias.measured for listed in biases for bias in listed.values())
     notes += [f"<dt>What the integration's accuracy does to numbers</dt><dd>{safe(text)}</dd>" for text in measured]
     heads = _heads("quantity", *_columns(names), "unit", "what it means")
@@ -202,12 +188,12 @@ def _said(key: str, values: Sequence[Any], biases: Sequence[Mapping[str, Bias]],
 
 
 def _parts(words: str, unit: str, values: Sequence[Any]) -> list[str]:
-    rows = [f"<tr><th colspan='{3 + len(values) + (len(values) > 1)}'>{safe(words)}</th></tr>"]
+    made = [f"<tr><th colspan='{3 + len(values) + (len(values) > 1)}'>{safe(words)}</th></tr>"]
     for part in dict.fromkeys(part for value in values if value for part in value):
         entries = [(value or {}).get(part) for value in values]
         if any(entries):
-            rows.append(_number(part.replace("_", " "), unit, entries, [None] * len(values), "", []))
-    return rows
+            made.append(_number(part.replace("_", " "), unit, entries, [None] * len(values), "", []))
+    return made
 
 
 def _number(

@@ -14,30 +14,16 @@ from trbdyn.base.shown import Displayed, Shown
 from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
 from trbdyn.model.assembly import Assembly
+from trbdyn.results import numbers
+from trbdyn.results.number import of_whole
 from trbdyn.results.observables.energy import EnergyAudit, energy_audit
 from trbdyn.results.result import Result, load_bearing
 from trbdyn.results.summary import Summary
 
 Array = NDArray[np.float64]
 
-TABLE: Final = {
-    "axial_load": "axial load, mean, N",
-    "radial_load": "radial load, mean, N",
-    "torque": "friction torque, N m",
-    "power_loss": "power loss, W",
-    "orbit_rms_over_cpr": "orbit radius of the cage / Cpr",
-    "axis_distance_over_cpr": "distance of the cage from the axis / Cpr",
-    "pocket_force_peak": "pocket force, largest, N",
-    "inner_pressure_max": "largest pressure, inner raceway, MPa",
-    "energy_closure": "energy audit: residual / dissipated",
-}
-"""What the table of an assembly shows of each bearing: names in `AssemblyResult.summary`, and what they are called."""
-SCALES: Final = {"MPa": 1e-6}
-"""Factors of the units at the end of a line of that table."""
-
-
-OF_ALL: Final = ("success", "message", "revolutions", "duration")
-"""Entries of a summary that are the same for all bearings."""
+SCALES: Final = {"Pa": (1e-6, "MPa")}
+"""Factors of units in the table of an assembly, and the units there."""
 
 
 class AssemblyResult(Mapping[str, Result], Displayed):
@@ -87,23 +73,24 @@ class AssemblyResult(Mapping[str, Result], Displayed):
         return self._shown().text()
 
     def _shown(self) -> Shown:
-        numbers = self.summary()
+        found = self.summary()
         rows: list[tuple[str, ...]] = [("", *self)]
-        for name, text in TABLE.items():
-            values = [one.get(name) for one in numbers.values()]
+        for row in numbers.rows("shaft"):
+            values = [one.get(row.name) for one in found.values()]
             if any(value is not None for value in values):
-                factor = SCALES.get(text.rpartition(", ")[2], 1.0)
-                rows.append((text, *("-" if value is None else f"{factor * value:.5g}" for value in values)))
+                factor, unit = SCALES.get(row.unit, (1.0, row.unit))
+                words = f"{row.words}, {unit}" if unit else row.words
+                rows.append((words, *("-" if value is None else f"{factor * value:.5g}" for value in values)))
         shaft = 1e6 * self.shaft_position
         mean = shaft.mean(axis=0)
         notes = (
             f"{self.message}; energy closure of the whole {self.energy.closure:.2g}; power loss of all bearings "
-            f"{sum(one['power_loss'] or 0.0 for one in numbers.values()):.5g} W.",
+            f"{sum(one.get('power_loss') or 0.0 for one in found.values()):.5g} W.",
             f"The shaft's centre of mass is at ({mean[0]:.4g}, {mean[1]:.4g}, {mean[2]:.4g}) um in the mean, and moves by up "
             f"to {np.hypot(*(shaft - mean)[:, :2].T).max():.3g} um about that across the axis.",
             *self.warnings,
         )
-        parts = tuple(one._shown() for one in numbers.values())
+        parts = tuple(one._shown() for one in found.values())
         title = f"Result: {'success' if self.success else 'failed'}"
         return Shown(title, tuple(rows), head=("", *self), notes=notes, parts=parts)
 
@@ -113,33 +100,21 @@ class AssemblyResult(Mapping[str, Result], Displayed):
         return self.assembly
 
     def summary(self) -> dict[str, Summary]:
-        """The summary of each bearing by its name, with its mean loads: ``axial_load`` and ``radial_load`` (N)."""
-        found = {}
-        for name, result in self.items():
-            found[name] = numbers = result.summary()
-            window = result.time >= (numbers["window_start"] or result.time[0])
-            numbers |= {load: float(values[window].mean()) for load, values in self.loads(name).items()}
-        return found
+        """The summary of each bearing by its name."""
+        return {name: result.summary() for name, result in self.items()}
 
     def numbers(self) -> dict[str, Any]:
-        """The entries of the summaries, each with its bearing's name before it (``left_torque``), and those of the whole:
-        ``torque``, ``power_loss`` and ``torque_by_loss_...`` are sums, film parameters are the smallest.
+        """The entries of the summaries, each with its bearing's name before it (``left_torque``), and those of the whole by their
+        names alone: ``torque``, ``power_loss`` and ``torque_by_loss_...`` are sums, film parameters are the smallest
+        (`Number.together`).
         """
-        each = {name: result.numbers() for name, result in self.items()}
-        first = next(iter(each.values()))
-        found: dict[str, Any] = {name: first[name] for name in OF_ALL}
-        for key in first:
-            values = [numbers.get(key) for numbers in each.values()]
-            if key in ("torque", "power_loss") or key.startswith("torque_by_loss_"):
-                found[key] = None if None in values else sum(values)
-            elif key.startswith("film_parameter_"):
-                found[key] = min((value for value in values if value is not None), default=None)
-        return found | {
-            f"{name}_{key}": value
-            for name, numbers in each.items()
-            for key, value in numbers.items()
-            if key not in OF_ALL
-        }
+        each = self.summary()
+        found = numbers.of_table(whole(each))
+        for name, values in each.items():
+            own = numbers.of_table(values)
+            same = {key for key in own if key in numbers.TABLE and numbers.TABLE[key].together == "same"}
+            found |= {f"{name}_{key}": value for key, value in own.items() if key not in same}
+        return found
 
     @property
     def overview(self) -> str:
@@ -273,6 +248,16 @@ class AssemblyResult(Mapping[str, Result], Displayed):
                 if field.group == "energy" and result[field.name].ndim == 1:
                     terms[field.name] = terms.get(field.name, 0.0) + result[field.name]
         return energy_audit(terms)
+
+
+def whole(each: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    """Numbers of a shaft of the summaries of its bearings: sums, the smallest, or what is the same for all."""
+    found = {
+        row.name: of_whole(row.together, (values.get(row.name) for values in each.values()))
+        for row in numbers.rows()
+        if row.together
+    }
+    return {name: value for name, value in found.items() if value is not None}
 
 
 @overload

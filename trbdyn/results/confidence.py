@@ -11,7 +11,7 @@ Another whirl that another start would lead to, and errors of the model, are not
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final
 
@@ -19,70 +19,34 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.results import observables
-from trbdyn.results.fields import contacts
 from trbdyn.results.observables.uncertainty import LEAST_BATCHES, MOST_COSINES
 
 if TYPE_CHECKING:
+    from trbdyn.results.number import Number
     from trbdyn.results.result import Result
 
 Array = NDArray[np.float64]
 
-AVERAGES: Final = (
-    "cage_speed_ratio",
-    "cage_slip",
-    "orbit_rms_over_cpr",
-    "orbit_radius_over_cpr_p05",
-    "orbit_radius_over_cpr_p95",
-    "axis_distance_over_cpr",
-    "axis_distance_over_cpr_p05",
-    "axis_distance_over_cpr_p95",
-    "whirl_ratio",
-    "whirl_frequency",
-    "whirl_coherence",
-    "speed_deviation_ratio",
-    "axial_over_clearance",
-    "tilt_rms",
-    "lean_mean",
-    "spacing_std_deg",
-    "pocket_force_p95",
-    "pocket_duty",
-    *(f"{side}_load_mean" for side in contacts()),
-    *(f"film_parameter_{side}" for side in contacts()),
-    "skew_rms",
-    "torque",
-    "torque_outer",
-    "power_loss",
-)
-"""Entries of the summary that are averages over its window."""
-
-FOLLOWING: Final = (
-    "cage_speed_ratio",
-    "cage_slip",
-    *(f"{side}_load_mean" for side in contacts()),
-    *(f"film_parameter_{side}" for side in contacts()),
-    "torque",
-    "torque_outer",
-    "power_loss",
-)
-"""Those that follow load and speed at once, whatever the cage does."""
-LOST: Final = ("torque", "torque_outer", "power_loss")
-"""Those of them in which the losses at the cage are a part."""
 OF_CAGE: Final = ("pocket", "land", "cage")
 """Beginnings of the names of losses at the cage."""
-
+FOLLOWING: Final = ("load", "loss")
+"""Averages that follow load and speed at once, whatever the cage does (`Number.interval`)."""
 
 SLOPE: Final = 0.04
 """Share of the records on either side of a percentile whose distance tells how dense they are there."""
 
 
 def confidence(
-    window: Result, average: Callable[[Result], dict[str, Any]], unsettled: str = ""
+    window: Result,
+    rows: Iterable[Number],
+    average: Callable[[Result, Iterable[Number]], Mapping[str, Any]],
+    unsettled: str = "",
 ) -> tuple[dict[str, float] | None, str]:
     """Half widths of the confidence intervals of averages over a window, in their units, None where they cannot be told; and in
     words from how many batches of which length they are, or why they cannot be told.
 
-    `average` gives the averages of a part of the records by the names of `AVERAGES`. `unsettled` says why the cage's motion is
-    not known to have settled: then only the averages of `FOLLOWING` have intervals.
+    `average` gives the numbers of some rows for a part of the records, by their names. `unsettled` says why the cage's motion is
+    not known to have settled: then only what follows the load at once has intervals (`Number.interval`).
     """
     edges, turns = _batches(window)
     if len(edges) <= LEAST_BATCHES and unsettled:
@@ -91,23 +55,25 @@ def confidence(
         found = f"the window has {turns:.3g} turns of the cage" if turns else f"the window has {len(window)} records"
         return None, f"they cannot be told: {found}, and it takes {LEAST_BATCHES} turns"
     time = window["time"]
-    parts = [average(window.window(time[a], time[b])) for a, b in pairwise(edges)]
-    of_records = _as_means(window)
+    wanted = [row for row in rows if row.interval in FOLLOWING or not unsettled]
+    plain = [row for row in wanted if row.series is None]
+    parts = [average(window.window(time[a], time[b]), plain) for a, b in pairwise(edges)]
     widths: dict[str, float] = {}
     untold: list[str] = []
-    for name in FOLLOWING if unsettled else AVERAGES:
-        if name in of_records:
-            values = np.array([of_records[name][a:b].mean() for a, b in pairwise(edges)])
+    for row in wanted:
+        name = row.name
+        if row.series is not None:
+            series = row.series(window)
+            values = np.array([series[a:b].mean() for a, b in pairwise(edges)])
         else:
-            given = [part.get(name) for part in parts]
-            # a rib that carries no load in a batch is left out of its averages
-            absent = 0.0 if name.endswith("_load_mean") and any(given) else math.nan
-            values = np.array([absent if value is None else value for value in given], dtype=float)
+            values = np.array([math.nan if part[name] is None else part[name] for part in parts], dtype=float)
         if not np.isfinite(values).all():
             continue
         width = observables.half_width(values)
         if math.isfinite(width):
-            widths[name] = width + (_of_cage(window) * abs(float(values.mean())) if unsettled and name in LOST else 0.0)
+            widths[name] = width + (
+                _of_cage(window) * abs(float(values.mean())) if unsettled and row.interval == "loss" else 0.0
+            )
         else:
             untold.append(name)
     each = f"{turns / (len(edges) - 1):.2g} turns of the cage" if turns else f"{time[edges[1]] - time[edges[0]]:.3g} s"
@@ -154,25 +120,7 @@ def _of_records(window: Result) -> list[int]:
     return list(range((records - 1) % length, records, length))
 
 
-def _as_means(window: Result) -> dict[str, Array]:
-    """A series over the records, for averages that are no means: to first order the average changes as the mean of the series."""
-    found: dict[str, Array] = {}
-    if "cage" not in window.groups or not window.has_cage:
-        return found
-    orbit, distance = window.orbit_radius_over_cpr, window.axis_distance_over_cpr
-    size = math.sqrt(float(np.mean(orbit**2)))
-    found["orbit_rms_over_cpr"] = 0.5 * (orbit**2 / size + size) if size > 0.0 else orbit
-    place = window["cage_position"][:, :2] / window.clearances.radial
-    for name, values, away in (
-        ("orbit_radius_over_cpr", orbit, place - place.mean(axis=0)),
-        ("axis_distance_over_cpr", distance, None),
-    ):
-        for share, end in ((0.05, "p05"), (0.95, "p95")):
-            found[f"{name}_{end}"] = _percentile_as_mean(values, share, away)
-    return found
-
-
-def _percentile_as_mean(values: Array, share: float, away: Array | None) -> Array:
+def percentile_as_mean(values: Array, share: float, away: Array | None) -> Array:
     """A series over the records whose mean changes as a percentile, to first order.
 
     Where the values are distances from the mean place (`away`, shape (T, 2)), the percentile also changes with that place: it

@@ -6,6 +6,7 @@ import difflib
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Self
 
@@ -16,6 +17,7 @@ from trbdyn.base.shown import Displayed, Shown
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.scene import Scene
 from trbdyn.results import fields as field_table
+from trbdyn.results import numbers
 from trbdyn.results import peaks as peak_table
 from trbdyn.results.derived import Derived
 from trbdyn.results.fields import Field
@@ -31,18 +33,6 @@ Array = NDArray[np.float64]
 
 SHOWN_RECORDS: Final = 20_000
 """Most records of a result whose numbers a notebook shows unasked: they are computed from all of them."""
-SHOWN_NUMBERS: Final = (
-    "settling",
-    "speed_rpm",
-    "cage_motion",
-    "orbit_rms_over_cpr",
-    "pocket_force_peak",
-    "torque",
-    "power_loss",
-    "film_parameter_outer_min",
-    "energy_closure",
-)
-"""Entries of the summary that a result shows in a notebook; the others are folded away."""
 
 
 class Result(Derived, Displayed):
@@ -127,9 +117,10 @@ class Result(Derived, Displayed):
         except FileError as error:
             parts = [Shown("scene", notes=(str(error),))]
         if len(self) <= SHOWN_RECORDS:
-            numbers = self.summary()._shown()
-            rows += [row[:3] for row in numbers.rows if len(row) == 4 and row[3] in SHOWN_NUMBERS]
-            parts.insert(0, replace(numbers, title="all numbers: result.summary()"))
+            shown = self.summary()._shown()
+            first = {row.name for row in numbers.rows("result")}
+            rows += [row[:3] for row in shown.rows if len(row) == 4 and row[3] in first]
+            parts.insert(0, replace(shown, title="all numbers: result.summary()"))
         else:
             parts.insert(0, Shown("numbers", notes=("result.summary() computes them from all records.",)))
         title = f"Result: {'success' if self.success else 'failed'}"
@@ -215,16 +206,21 @@ class Result(Derived, Displayed):
         return force[:, 2], np.hypot(force[:, 0], force[:, 1])
 
     @property
+    def on_shaft(self) -> bool:
+        """Whether the bearing is one of several on a shaft: its loads follow from the shaft's, and are those of its records."""
+        return "assembly" in self.meta
+
+    @property
     def ring_moves(self) -> bool:
         """Whether the inner ring is a body that moves by itself, or with a shaft on several bearings."""
-        return "assembly" in self.meta or self.scene.ring_body is not None
+        return self.on_shaft or self.scene.ring_body is not None
 
     @property
     def housing_moves(self) -> bool:
         """Whether the outer ring is a body that moves with a housing."""
         return self.scene.housing is not None
 
-    @property
+    @cached_property
     def groups(self) -> tuple[str, ...]:
         """Names of the recorded groups."""
         return field_table.groups(self._fields.values())
@@ -281,6 +277,12 @@ class Result(Derived, Displayed):
             raise InputError.of("peaks", "asked for", "were not kept: the run was made without the group 'peaks'")
         return peak_table.join(self["time"], {name: self[name] for name in kept})
 
+    def peak(self, mean: str) -> Array:
+        """One of the means of `peaks`, without the others being joined."""
+        if self._info.peaks:
+            return Peaks(self._info.peaks)[mean]
+        return peak_table.join(self["time"], {mean: self[mean]})[mean]
+
     @property
     def settled(self) -> Result:
         """The result after the transient, the second half of the run at least; `settling` says whether it has settled
@@ -301,14 +303,7 @@ class Result(Derived, Displayed):
 
     def numbers(self) -> dict[str, Any]:
         """The entries of `summary`, with those of its tables as ``table_entry``."""
-        found: dict[str, Any] = {}
-        for name, value in self.summary().items():
-            found |= (
-                {f"{name}_{key}": entry for key, entry in value.items()}
-                if isinstance(value, Mapping)
-                else {name: value}
-            )
-        return found
+        return numbers.of_table(self.summary())
 
     @property
     def overview(self) -> str:

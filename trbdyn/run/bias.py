@@ -19,7 +19,7 @@ import numpy as np
 
 from trbdyn.model.effects import Effects
 from trbdyn.model.motion import is_constant
-from trbdyn.results.quantities import QUANTITIES
+from trbdyn.results.numbers import TABLE
 from trbdyn.run import estimate
 
 if TYPE_CHECKING:
@@ -145,7 +145,7 @@ def biases(result: Result) -> dict[str, Bias]:
     measured for it.
     """
     preset = preset_of(result)
-    if not result.has_cage or "assembly" in result.meta:
+    if not result.has_cage or result.on_shaft:
         return {}
     found = measured(result.scene, preset, axial_load(result), colliding(result))
     if found is None or preset is None:
@@ -156,7 +156,7 @@ def biases(result: Result) -> dict[str, Bias]:
     for name in values:
         share, width = values[name], values.get(f"{name}_half_width")
         entries = BIASES.get(name, (name.removeprefix("bias_"),))
-        if not name.startswith("bias_") or share is None or not set(entries) <= set(QUANTITIES):
+        if not name.startswith("bias_") or share is None or not set(entries) <= set(TABLE):
             continue
         if abs(share) + (width or 0.0) >= LEAST:
             bias = Bias(share, math.nan if width is None else width, preset, where, UNITS.get(name, ""))

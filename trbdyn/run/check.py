@@ -24,8 +24,8 @@ from scipy.special import stdtrit
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
+from trbdyn.results import numbers as table
 from trbdyn.results.assembly import AssemblyResult
-from trbdyn.results.quantities import QUANTITIES
 from trbdyn.results.result import Result
 from trbdyn.run.repeat import DEARER, Piece, Repeating, Sample, pieces
 
@@ -37,23 +37,6 @@ BUDGET_S: Final = 2.0
 """Processor time of a check (s), or `BUDGET_SHARE` of that of the run if it is more."""
 BUDGET_SHARE: Final = 0.1
 
-CHECKED: Final = (
-    "power_loss",
-    "torque",
-    "outer_load_mean",
-    "inner_load_mean",
-    "rib_load_mean",
-    "film_parameter_outer",
-    "film_parameter_inner",
-    "pocket_force_p95",
-    "pocket_duty",
-    "pocket_force_peak",
-    "land_force_peak",
-    "outer_pressure_max",
-    "inner_pressure_max",
-    "skew_rms",
-)
-"""Numbers of the summary whose memory is short enough for pieces of a run; a bearing has those of them that its summary has."""
 SLOW: Final = "orbit of the cage, spacing of the rollers and settling: their memory is longer than a check"
 
 
@@ -200,7 +183,7 @@ class _Checking:
 
     def __init__(self, result: Result | AssemblyResult, budget: float) -> None:
         self.budget, self.began = budget, clock.process_time()
-        self.repeating = Repeating(result, CHECKED)
+        self.repeating = Repeating(result, [row for row in table.rows() if row.checked])
         self.whole = False
 
     def go(self) -> Check:
@@ -251,7 +234,7 @@ class _Checking:
         return samples
 
     def _words(self) -> dict[str, str]:
-        words = {key: QUANTITIES[key].words for key in CHECKED}
+        words = {row.name: row.words for row in self.repeating.rows}
         return {
             f"{name}_{key}" if name else key: f"{name}: {text}" if name else text
             for name in self.repeating.parts

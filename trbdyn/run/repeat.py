@@ -18,8 +18,8 @@ from trbdyn.model.assembly import Assembly
 from trbdyn.model.motion import History
 from trbdyn.model.scene import Scene
 from trbdyn.results.assembly import AssemblyResult
+from trbdyn.results.number import Number, Seen
 from trbdyn.results.result import Result
-from trbdyn.results.summary import averages, extremes
 from trbdyn.run.options import ACCURACY, OF_ONE_RUN, RunOptions
 from trbdyn.run.replay import NEEDED, Replay
 from trbdyn.run.running import Run, output_times
@@ -66,10 +66,10 @@ class Sample:
 
 
 class Repeating:
-    """Repeats a run and reads some numbers of its summary (`names`)."""
+    """Repeats a run and reads some numbers of its summary (`rows`)."""
 
-    def __init__(self, result: Result | AssemblyResult, names: Sequence[str]) -> None:
-        self.names = names
+    def __init__(self, result: Result | AssemblyResult, rows: Sequence[Number]) -> None:
+        self.rows = rows
         self.parts: Mapping[str, Result] = result.by_name
         self.first = next(iter(self.parts.values()))
         self.time = self.first["time"]
@@ -146,12 +146,12 @@ class Repeating:
         """Extremes from a time (s) on, and averages from another one on; of several bearings with their names."""
         found: dict[str, float] = {}
         for name, part in parts.items():
-            largest = extremes(part if since <= part["time"][0] else part.window(since))
-            numbers = largest | averages(part.window(averaged))
+            seen = Seen(part if since <= part["time"][0] else part.window(since), part.window(averaged))
+            values = {row.name: seen.value(row) for row in self.rows}
             found |= {
-                f"{name}_{key}" if name else key: float(numbers[key])
-                for key in self.names
-                if isinstance(numbers.get(key), float | int)
+                f"{name}_{key}" if name else key: float(value)
+                for key, value in values.items()
+                if value is not None and math.isfinite(value)
             }
         return found
 

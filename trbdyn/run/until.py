@@ -15,8 +15,8 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING, Final
 
 from trbdyn.errors import InputError
-from trbdyn.results.confidence import AVERAGES
-from trbdyn.results.fields import contacts, table
+from trbdyn.results import numbers
+from trbdyn.results.fields import contacts
 
 if TYPE_CHECKING:
     from trbdyn.results.result import Result
@@ -27,22 +27,6 @@ GROWTH: Final = 1.125
 """Length of the run at a look over that at the look before."""
 LEAST_RECORDS: Final = 50
 """Records before the first look."""
-
-_GROUPS: Final = {field.name: field.group for field in table()}
-GROUPS_OF: Final = {
-    "pocket_": "pocket",
-    "torque": "torque",
-    "power_": "power",
-    **{
-        start: _GROUPS[f"{side}_load"]
-        for side in reversed(contacts())  # "outer" is the beginning of others
-        for start in (f"{side}_load", f"film_parameter_{side}")
-    },
-    "cage_slip": "rollers",
-    "skew_": "rollers",
-    "spacing_": "rollers",
-}
-"""Group of records that an average needs, by the beginning of its name; other averages are those of the cage."""
 
 
 def check_wanted(wanted: Mapping[str, float], groups: tuple[str, ...], fields: Collection[str], has_cage: bool) -> None:
@@ -59,10 +43,11 @@ def check_wanted(wanted: Mapping[str, float], groups: tuple[str, ...], fields: C
             raise InputError.of(
                 ("run", "until"), name, f"needs a contact that this bearing does not have: {contacts()[side]}"
             )
-        missing = sorted(set(groups_for(name)) - set(groups))
+        row = numbers.TABLE[name]
+        missing = sorted({*numbers.SETTLING, *row.missing(groups)} - set(groups))
         if missing:
             raise InputError.of(("run", "save_groups"), groups, f"must hold {', '.join(missing)} for until = {name}")
-        if not has_cage and groups_for(name)[-1] in ("cage", "pocket"):
+        if not has_cage and {"cage", "pocket"} & set(row.groups):
             raise InputError.of(("run", "until"), name, "needs a cage: effects.bodies = 'rollers_and_cage'")
 
 
@@ -70,16 +55,11 @@ def check_average(name: str, *field: str) -> None:
     """Check that a name is one of an average of the summary. If it is none, an InputError at that field has the name that is
     nearest.
     """
-    if name not in AVERAGES:
-        near = get_close_matches(str(name), AVERAGES, 1)
+    known = numbers.averages()
+    if name not in known:
+        near = get_close_matches(str(name), known, 1)
         meant = f"did you mean {near[0]}? " if near else ""
-        raise InputError.of(field, name, f"{meant}must name averages of the summary: {', '.join(AVERAGES)}")
-
-
-def groups_for(name: str) -> tuple[str, str, str]:
-    """Groups of records that an average needs: those that tell whether the motion has settled, and last its own."""
-    own = next((group for start, group in GROUPS_OF.items() if name.startswith(start)), "cage")
-    return "cage", "rollers", own
+        raise InputError.of(field, name, f"{meant}must name averages of the summary: {', '.join(known)}")
 
 
 class Until:
@@ -111,8 +91,8 @@ class Until:
 
     def _is_narrow(self, result: Result, *, said: bool = True) -> bool:
         values = result.summary()
-        widths = values["confidence"] or {}
-        found = {name: _share(values[name], widths.get(name)) for name in self.wanted}
+        widths = values.get("confidence") or {}
+        found = {name: _share(values.get(name), widths.get(name)) for name in self.wanted}
         if said:
             known = "; ".join(_words(name, share, self.wanted[name]) for name, share in found.items())
             unknown = not all(math.isfinite(share) for share in found.values())

@@ -8,7 +8,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from trbdyn.plot.style import COLOURS, GREY, LIGHT, plain, styled
-from trbdyn.results.quantities import QUANTITIES
+from trbdyn.results.numbers import find
 
 if TYPE_CHECKING:
     from trbdyn.study.optimise import Design, Optimum
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def draw_front(found: Optimum) -> Any:
     """Draw the designs over the first two aims; of one aim over the order in which they were run."""
-    aims = list(found.want)[:2]
+    aims, names = list(found.want)[:2], found.subjects[0].names
 
     def places(designs: tuple[Design, ...]) -> Any:
         own = [[one.expected[aim] for aim in aims] for one in designs]
@@ -37,14 +37,14 @@ def draw_front(found: Optimum) -> Any:
         ax.plot(*front, "o-" if len(aims) > 1 else "o", color=COLOURS[0], ms=5.0, label=of)
         ax.plot(*places((found.first,)), "s", color=COLOURS[1], ms=8.0, label="first design")
         ax.plot(*places((found.chosen,)), "D", color=COLOURS[3], ms=8.0, label="chosen design")
-        ax.set_xlabel(_label(aims[0]) if len(aims) > 1 else "number of the design")
-        ax.set_ylabel(_label(aims[-1]))
+        ax.set_xlabel(_label(aims[0], names) if len(aims) > 1 else "number of the design")
+        ax.set_ylabel(_label(aims[-1], names))
         ax.legend(loc="best")
         figure.suptitle(f"Designs of {plain(found.subjects[0].part.bearing.name)} for {len(found.want)} aims")
     return figure
 
 
-def _label(name: str) -> str:
-    known = QUANTITIES.get(name)
+def _label(name: str, bearings: tuple[str, ...]) -> str:
+    known = find(name, bearings)
     unit = known.unit if known is not None else ""
     return plain(f"{known.words if known is not None else name}{f' ({unit})' if unit else ''}".strip())

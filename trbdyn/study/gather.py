@@ -6,7 +6,7 @@ import hashlib
 import io
 import os
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,13 +17,15 @@ from trbdyn.base.own_files import write_whole
 from trbdyn.errors import FileError
 from trbdyn.model.assembly import Assembly, Shaft, ShaftBearing, ShaftLoad
 from trbdyn.model.scene import Scene
-from trbdyn.results.quantities import QUANTITIES
+from trbdyn.results.numbers import find, listed
 from trbdyn.run.options import RunOptions
 from trbdyn.study.definition import Study
 from trbdyn.study.index import Entry
 
 if TYPE_CHECKING:
     import xarray
+
+    from trbdyn.results.number import Place
 
 NOT_RUN = "not run"
 _UNKNOWN = "0" * 64
@@ -50,12 +52,14 @@ def dataset(study: Study, entries: Sequence[Entry | None]) -> xarray.Dataset:
     }
     tables: list[Mapping[str, Any]] = [entry.values if entry else {} for entry in entries]
     coordinates = _coordinates(study, dims)
+    subjects = (case.scene for case in study.cases if case.scene is not None)
+    bearings = dict.fromkeys(name for subject in subjects for name in subject.names if name)
     for key in dict.fromkeys(key for table in tables for key in table):
         column = _column([table.get(key) for table in tables])
         name = f"{key}_observed" if key in coordinates or key in variables else key
         extra = tuple(f"{name}_{k}" for k in range(column.ndim - 1))
-        variables[name] = ((*dims, *extra), column.reshape(*shape, *column.shape[1:]), _attributes(key))
-    return xarray.Dataset(variables, coords=coordinates, attrs={"study": study.name})
+        variables[name] = ((*dims, *extra), column.reshape(*shape, *column.shape[1:]), _attributes(key, bearings))
+    return xarray.Dataset(variables, coords=coordinates, attrs={"study": study.name, "bearings": " ".join(bearings)})
 
 
 def _texts(values: Sequence[str]) -> NDArray[Any]:
@@ -131,14 +135,14 @@ def _stacked(values: Sequence[Any]) -> NDArray[Any]:
     return out
 
 
-def _attributes(name: str) -> dict[str, str]:
-    if name.startswith("confidence_") and name.removeprefix("confidence_") in QUANTITIES:
-        words, unit, _ = QUANTITIES[name.removeprefix("confidence_")]
-        return {"long_name": f"{words.strip()}: half width of the 95 % confidence interval", "units": unit or "1"}
-    for label, (words, unit, _) in QUANTITIES.items():
-        if name == label or (name.startswith(f"{label}_") and label.endswith(("_split", "_by_loss"))):
-            return {"long_name": words.strip() or label, "units": unit or "1"}
-    return {}
+def _attributes(name: str, bearings: Iterable[str]) -> dict[str, str]:
+    found = find(name, bearings)
+    return {} if found is None else {"long_name": found.words, "units": found.unit or "1"}
+
+
+def listed_in(data: xarray.Dataset, place: Place) -> list[str]:
+    """Variables of a dataset that are numbers of a short list, of each bearing and of the whole."""
+    return listed(place, data.data_vars, data.attrs.get("bearings", "").split())
 
 
 def save(data: xarray.Dataset, path: str | os.PathLike[str], *, overwrite: bool = False) -> Path:

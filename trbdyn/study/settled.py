@@ -11,7 +11,7 @@ import numpy as np
 from trbdyn.results import observables
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.result import Result
-from trbdyn.results.summary import mean_loss, shaft_torque
+from trbdyn.results.rows.losses import mean_loss, shaft_torque
 from trbdyn.run.options import RunOptions
 from trbdyn.study.definition import Case, Study
 from trbdyn.study.runner import Running

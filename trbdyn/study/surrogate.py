@@ -20,7 +20,6 @@ from numpy.typing import ArrayLike, NDArray
 from trbdyn.base.expected import expect
 from trbdyn.base.shown import Shown, Tabled
 from trbdyn.errors import InputError, unknown_name
-from trbdyn.results.quantities import QUANTITIES
 from trbdyn.study.uncertainty import Band, Uncertainty
 
 if TYPE_CHECKING:
@@ -196,7 +195,7 @@ def surrogate(found: Uncertainty, quantity: str, *, seed: int = 0) -> Surrogate:
     errors = _unseen(unit, values, seed, fit.kernel_)
     return Surrogate(
         quantity=quantity,
-        unit=QUANTITIES[quantity].unit if quantity in QUANTITIES else "",
+        unit=str(found.data[quantity].attrs.get("units", "")).removesuffix("1"),
         bands=found.bands,
         draws=len(values),
         error=float(np.sqrt(np.mean(errors**2))),

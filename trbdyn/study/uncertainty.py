@@ -21,11 +21,11 @@ from trbdyn.model.assembly import Assembly, ShaftBearing, Subject
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.lubricants import REPLENISHMENT, supply_of
 from trbdyn.model.scene import Scene
-from trbdyn.results.quantities import QUANTITIES as SUMMARY
 from trbdyn.run.options import RunOptions
 from trbdyn.run.torque_laws import TorqueLaws, torque_laws
 from trbdyn.study.definition import Base, Case, Study, split_path
 from trbdyn.study.drawn_bearing import belongs_together
+from trbdyn.study.gather import listed_in
 from trbdyn.study.runner import Running
 from trbdyn.study.runner import run as run_study
 
@@ -34,14 +34,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-QUANTITIES: Final = (
-    "torque",
-    "outer_pressure_max",
-    "film_parameter_inner",
-    "film_parameter_rib",
-    "orbit_rms_over_cpr",
-)
-"""Observables whose shares are printed unless others are asked for."""
 LEVEL: Final = 0.95
 """Share of what may come that a band holds, if the draws are enough for it."""
 FEWEST: Final = 8
@@ -230,7 +222,7 @@ def uncertainty(
     samples: int = 64,
     seed: int = 0,
     options: RunOptions | None = None,
-    quantities: Sequence[str] = QUANTITIES,
+    quantities: Sequence[str] | None = None,
     **how: Unpack[Running],
 ) -> Uncertainty:
     """The band of every observable that follows from the bands of the inputs.
@@ -253,8 +245,8 @@ def uncertainty(
         Seed of the draws.
     options : RunOptions, optional
         How each draw is run; 5 turns of the shaft with 'fast' by default.
-    quantities : sequence of str
-        Observables that are printed.
+    quantities : sequence of str, optional
+        Observables that are printed; by default torque, largest pressure, films and the size of the whirl.
     **how
         Folder, executor, workers and progress bar of the runs: `trbdyn.study.Running`.
 
@@ -354,7 +346,11 @@ def drawn_case(base: Base, options: RunOptions, bands: Sequence[Band], row: Arra
 
 
 def _gathered(
-    data: xarray.Dataset, bands: tuple[Band, ...], unit: Array, quantities: Sequence[str], laws: TorqueLaws | None
+    data: xarray.Dataset,
+    bands: tuple[Band, ...],
+    unit: Array,
+    quantities: Sequence[str] | None,
+    laws: TorqueLaws | None,
 ) -> Uncertainty:
     status = [str(text) for text in data["status"].values]
     ran = np.array([text == "done" for text in status])
@@ -372,19 +368,19 @@ def _gathered(
             continue
         values = np.asarray(variable.values, dtype=float)
         if np.isfinite(values[0]) and np.isfinite(values[1:][good]).all():
-            spreads[str(name)] = _spread(str(name), values[0], values[1:][good], bands, unit[good])
-    if tuple(quantities) != QUANTITIES and (strange := [name for name in quantities if name not in spreads]):
+            units = str(variable.attrs.get("units", "")).removesuffix("1")
+            spreads[str(name)] = _spread(str(name), units, values[0], values[1:][good], bands, unit[good])
+    if quantities is not None and (strange := [name for name in quantities if name not in spreads]):
         raise InputError.of("quantities", strange[0], unknown_name(strange[0], spreads))
-    shown = tuple(name for name in quantities if name in spreads)
+    shown = tuple(name for name in (quantities or listed_in(data, "band")) if name in spreads)
     return Uncertainty(spreads, bands, int(good.sum()), refused, data, shown, laws)
 
 
-def _spread(name: str, value: float, values: Array, bands: Sequence[Band], unit: Array) -> Spread:
+def _spread(name: str, units: str, value: float, values: Array, bands: Sequence[Band], unit: Array) -> Spread:
     low, high, held = band_of(values)
     found, rest = first_order(unit, values)
     shares = {band.path: float(share) for band, share in zip(bands, found, strict=False)}
-    unit_text = SUMMARY[name].unit if name in SUMMARY else ""
-    return Spread(name, unit_text, float(value), float(values.mean()), low, high, shares, rest, held)
+    return Spread(name, units, float(value), float(values.mean()), low, high, shares, rest, held)
 
 
 def share_held(draws: int) -> float:

@@ -12,15 +12,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from trbdyn.errors import InputError
-from trbdyn.results.confidence import AVERAGES, confidence
-from trbdyn.results.fields import contacts
-from trbdyn.results.summary import averages
-from trbdyn.run.until import check_average, groups_for
+from trbdyn.results import numbers
+from trbdyn.run.until import check_average
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -30,31 +28,10 @@ if TYPE_CHECKING:
     from trbdyn.results.observables import MotionSettling
     from trbdyn.results.result import Result
 
-SUMS: Final = ("torque", "power_loss")
-"""Averages of several bearings that can be added up."""
-LEAST: Final = {
-    "cage_slip": 1e-4,
-    "orbit_": 0.01,
-    "axis_": 0.01,
-    "axial_": 0.01,
-    "whirl_ratio": 0.05,
-    "whirl_coherence": 0.05,
-    "speed_deviation_": 0.05,
-    "tilt_": 1e-5,
-    "lean_": 1e-5,
-    "skew_": 1e-5,
-    "spacing_": 1e-3,
-    "pocket_force_": 0.1,
-    "pocket_duty": 1e-3,
-    **{f"{side}_load_": 0.1 for side in contacts()},
-}
-"""Least value that means anything, by the beginning of the average's name, in the units of the summary; 0 for others."""
-
 
 def least_size(name: str) -> float:
     """The least value of an average that means anything; 0 where each does."""
-    own = of_bearing(name)[1]
-    return next((size for start, size in LEAST.items() if own.startswith(start)), 0.0)
+    return numbers.TABLE[of_bearing(name)[1]].least
 
 
 def size_of(name: str, value: float) -> float:
@@ -68,32 +45,32 @@ def prefixes(subject: Subject) -> tuple[str, ...]:
 
 
 def of_bearing(name: str) -> tuple[str, str]:
-    """The beginning of a name, which says the bearing, and the average of `trbdyn.results.confidence.AVERAGES`."""
-    own = max((one for one in AVERAGES if name == one or name.endswith(f"_{one}")), key=len, default=name)
+    """The beginning of a name, which says the bearing, and the average of the table (`trbdyn.results.numbers.averages`)."""
+    own = max((one for one in numbers.averages() if name == one or name.endswith(f"_{one}")), key=len, default=name)
     return name.removesuffix(own), own
 
 
 def groups_of(name: str) -> tuple[str, ...]:
-    """Groups of records that an average needs, see `trbdyn.run.until.groups_for`."""
-    return groups_for(of_bearing(name)[1])
+    """Groups of records that an average needs: those that tell whether the motion has settled, and its own."""
+    return (*numbers.SETTLING, *numbers.TABLE[of_bearing(name)[1]].missing(()))
 
 
 def check_names(subject: Subject, names: Iterable[str]) -> None:
     """Refuse names that are no averages of the subject."""
-    bearings = prefixes(subject)
+    bearings, sums = prefixes(subject), numbers.sums()
     for name in names:
         bearing, own = of_bearing(name)
         check_average(own, "want")
-        if bearing not in bearings and not (name in SUMS and len(bearings) > 1):
-            limit = f"must begin with the name of a bearing ({', '.join(bearings)}), or be one of the sums {', '.join(SUMS)}"
+        if bearing not in bearings and not (name in sums and len(bearings) > 1):
+            limit = f"must begin with the name of a bearing ({', '.join(bearings)}), or be one of the sums {', '.join(sums)}"
             raise InputError.of("want", name, limit if len(bearings) > 1 else f"must be {own}: there is one bearing")
 
 
 def joined(each: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
     """Numbers of all bearings in one table, with the sums of several."""
     found = {f"{bearing}{name}": value for bearing, values in each.items() for name, value in values.items()}
-    for name in SUMS if len(each) > 1 else ():
-        values = [numbers.get(name) for numbers in each.values()]
+    for name in numbers.sums() if len(each) > 1 else ():
+        values = [one.get(name) for one in each.values()]
         if None not in values:
             found[name] = sum(values)
     return found
@@ -121,11 +98,11 @@ class Records:
 
     def averages(self) -> dict[str, Any]:
         """The averages over the records."""
-        return joined({bearing: averages(part) for bearing, part in self.parts.items()})
+        return joined({bearing: numbers.all_averages(part) for bearing, part in self.parts.items()})
 
     def half_widths(self) -> dict[str, float]:
         """Half widths of their 95 % confidence intervals, as far as they are known; of a sum the sum of those of its parts."""
-        return joined({bearing: confidence(part, averages)[0] or {} for bearing, part in self.parts.items()})
+        return joined({bearing: numbers.half_widths(part) for bearing, part in self.parts.items()})
 
     def settling(self) -> MotionSettling:
         """Whether the motion has settled; of several bearings of the one that has not, or that took longest."""

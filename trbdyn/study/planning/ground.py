@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from trbdyn.errors import InputError, StepError
+from trbdyn.results.numbers import TABLE
 from trbdyn.study.planning.averaged import Records, least_size, of_bearing, size_of
 from trbdyn.study.planning.candidates import USUAL_ACCURACY
 from trbdyn.study.planning.probes import BATCHES, TOO_LONG, Array, Length, in_batches, number_in, run_quietly
@@ -30,8 +31,6 @@ MOST_TURNS: Final = 1000.0
 """Turns of the shaft after which the run ends, however fast it is."""
 UNKNOWN_SCATTER: Final = 2.0 * 2.1
 """Half width over the standard error of twenty batches (Student's t: 2.1), twice as large as they may not be independent."""
-SIZES_OF_WHIRL: Final = ("orbit_rms_over_cpr", "axis_distance_over_cpr")
-"""Averages that are the size of the whirl; what it does to others is taken to go with the square of its size."""
 TOLD_FROM_SCATTER: Final = 2.8
 """Difference of two means of five batches each over its standard error (Student's t: 2.78) from which it is a drift."""
 
@@ -118,7 +117,7 @@ def _drift(records: Records, names: Sequence[str], size: Mapping[str, float], se
     for name in names:
         before, after = (part[name] for part in batches)
         change = abs(float(after.mean() - before.mean()))
-        power = 1.0 if of_bearing(name)[1] in SIZES_OF_WHIRL else 2.0
+        power = TABLE[of_bearing(name)[1]].grows
         goes_on = max(longer, _left_to_grow(last, grown, power)) if grown > 0.0 else longer
         noise = TOLD_FROM_SCATTER * math.hypot(
             *(float(part.std(ddof=1)) / math.sqrt(part.size) for part in (before, after))

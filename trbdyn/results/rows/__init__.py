@@ -1,0 +1,1 @@
+"""The rows of the table of numbers, by what they are of: the run, the cage, contacts, ratings, losses."""
