@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from trbdyn.plot.cage import revolutions, turns_label
 from trbdyn.plot.style import COLOURS, LINES, canvas, envelope, legend
 from trbdyn.results.result import Result
+from trbdyn.results.rows.losses import mean_loss, shaft_torque, torque_by_force, torque_by_loss
 
 
 def _bars(ax: Axes, values: Mapping[str, float], unit: str, total: float) -> None:
@@ -48,15 +49,15 @@ def torque_split(result: Result, ax: Axes | None = None) -> Axes:
     result : Result
         Needs the group torque; energy or power for the losses.
     """
-    total, forces = float(result["inner_torque"].mean()), result.torque_split
+    total, forces = shaft_torque(result), torque_by_force(result)
     if {"power", "energy"} & set(result.groups):
-        split, title = result.torque_by_loss, "Friction torque of the shaft by what loses it"
+        split, title = torque_by_loss(result), "Friction torque of the shaft by what loses it"
         told = ", ".join(f"{name.replace('_', ' ')} {value:.3g}" for name, value in forces.items() if value)
         note = f"\nforces on the inner ring that make this torque:\n{told} N m"
     else:
         split, title, note = forces, "Friction torque of the shaft by the force on the inner ring", ""
     with canvas(ax, (6.4, 3.2), title) as ax:
-        _bars(ax, split, "N m", sum(split.values()))
+        _bars(ax, split, "N m", total)
         ax.set_xlabel(f"torque (N m), {total:.4g} N m in all{note}")
     return ax
 
@@ -70,7 +71,7 @@ def power_split(result: Result, ax: Axes | None = None) -> Axes:
         Needs the group energy or power.
     """
     split = result.power_split
-    total = sum(split.values())
+    total = mean_loss(result)
     with canvas(ax, (6.4, 3.2), "Power loss by mechanism") as ax:
         _bars(ax, split, "W", total)
         ax.set_xlabel(f"power loss (W), {total:.4g} W in all")

@@ -29,7 +29,7 @@ def report(
     result: Result | AssemblyResult,
     path: str | os.PathLike[str],
     *,
-    other: Result | None = None,
+    other: Result | AssemblyResult | None = None,
     names: Sequence[str] = ("first", "second"),
     title: str = "",
     pictures: Sequence[str] | None = None,
@@ -48,8 +48,8 @@ def report(
         The run. Of an assembly the page has the shaft first, and then each bearing.
     path : path-like
         HTML file to write, ``NAME.html``.
-    other : Result, optional
-        A second run to compare with.
+    other : Result or AssemblyResult, optional
+        A second run to compare with: of one bearing, or of bearings with the same names.
     names : sequence of str
         What the two runs are called.
     title : str
@@ -86,10 +86,10 @@ def report(
     """
     from trbdyn.plot import PICTURES
     from trbdyn.plot.assembly import of_result
-    from trbdyn.reporting.page import page, page_of_assembly
+    from trbdyn.reporting.page import page
 
     expect("result", result, Result, AssemblyResult)
-    known = {*PICTURES, *(() if isinstance(result, Result) else of_result(result))}
+    known = {*PICTURES, *of_result(result)}
     for name in pictures or ():
         if name not in known:
             raise InputError.of("pictures", name, unknown_name(name, known))
@@ -102,14 +102,16 @@ def report(
     target = output_path(path, endings=HTML, field="path", **how)  # before the pictures are drawn, which takes a while
     if pdf:
         output_path(target.with_suffix(".pdf"), field="path", **how)
-    if isinstance(result, Result):
-        results = [result] if other is None else [result, other]
-        heading = title or f"Report: {' and '.join(dict.fromkeys(run.scene.bearing.name for run in results))}"
-        text = page(results, list(names[: len(results)]), heading, pictures, shown)
-    elif other is not None:
-        raise InputError.of("other", other, "must not be given: assemblies are reported one by one")
-    else:
-        text = page_of_assembly(result, title or f"Report: {', '.join(result)} on one shaft", pictures, shown)
+    results: list[Result | AssemblyResult] = [result] if other is None else [result, other]
+    bearings = [list(one.by_name) for one in results]
+    if bearings[0] != bearings[-1]:
+        limit = (
+            f"must be a run of the same bearings, {', '.join(bearings[0])}, to be compared with"
+            if len(bearings[0]) > 1
+            else "must be a run of one bearing, as the first is"
+        )
+        raise InputError.of("other", ", ".join(bearings[-1]) or "one bearing", limit)
+    text = page(results, list(names[: len(results)]), title, pictures, shown)
     written = write_whole(path, text, endings=HTML, **how)
     if pdf:
         save_pdf(written, written.with_suffix(".pdf"), overwrite=overwrite)

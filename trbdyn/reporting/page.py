@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import base64
 import io
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 from trbdyn.base.shown import Shown
+from trbdyn.plot.assembly import of_result
 from trbdyn.reporting import tables
 from trbdyn.reporting.captions import CAPTIONS
 from trbdyn.reporting.inputs import Row, rows
 from trbdyn.reporting.ratings import frequencies_section, ratings_section, sheet_of, system_section
-from trbdyn.reporting.tables import safe
-from trbdyn.reporting.verdict import verdict, warnings
+from trbdyn.reporting.tables import number_text, safe
+from trbdyn.reporting.verdict import Sentence, verdict, verdict_of_shaft, warnings
 from trbdyn.results.assembly import AssemblyResult
+from trbdyn.results.numbers import drawn_of, of_picture
 from trbdyn.results.result import Result
 from trbdyn.results.rows.ratings import RATINGS, of_sheet
 from trbdyn.run.bias import biases
@@ -35,38 +37,56 @@ GRADES = {"good": "good", "care": "take care", "bad": "not good", "plain": ""}
 
 
 def page(
-    results: Sequence[Result],
+    results: Sequence[Result | AssemblyResult],
     names: Sequence[str],
     title: str,
     pictures: Sequence[str] | None,
     shown: Sequence[Shown] = (),
 ) -> str:
-    """The HTML of the report of one run or of two, with further tables below."""
-    return _whole(title, _body(results, names, title, pictures) + tables.further(shown))
+    """The HTML of the report of one run or of two, of one bearing or of several on a shaft, with further tables below.
 
-
-def page_of_assembly(
-    result: AssemblyResult, title: str, pictures: Sequence[str] | None, further: Sequence[Shown] = ()
-) -> str:
-    """The HTML of the report of bearings on a shaft: the shaft and what they share, then each bearing as in a report of its
-    own."""
-    from trbdyn.plot.assembly import of_result
-
-    own = of_result(result)
-    shown = result._shown()
-    table = tables.table_of(("quantity", *result), shown.rows[1:])
-    notes = "".join(f"<li>{safe(note)}</li>" for note in shown.notes)
-    wanted = [name for name in own if pictures is None or name in pictures]
-    figures = "".join(_figure(own[name], CAPTIONS[name]) for name in wanted if len(result.time) > 1)
-    parts = [
-        f"<h1>{safe(title)}</h1>\n<p class='sub'>{safe(result.assembly.title if result.assembly else '')}</p>",
-        f"<h2>The bearings side by side</h2>{table}<ul class='warnings'>{notes}</ul>",
-        system_section(result),
-        f"<h2>The shaft</h2><div class='pictures'>{figures}</div>",
-    ]
+    Of a shaft: what the bearings share, then each bearing as in a report of its own.
+    """
+    bearings = list(results[0].by_name)
+    if bearings == [""]:
+        of_one = [result.parts[0] for result in results]
+        heading = title or f"Report: {' and '.join(dict.fromkeys(run.scene.bearing.name for run in of_one))}"
+        return _whole(heading, _body(of_one, names, heading, pictures) + tables.further(shown))
+    heading = title or f"Report: {', '.join(bearings)} on one shaft"
+    parts = [f"<h1>{safe(heading)}</h1>"]
+    for result, name in zip(results, names, strict=True):
+        parts.append(_shaft(result, name if len(results) > 1 else "", pictures))
+    own = of_result(results[0])
     of_bearings = None if pictures is None else [name for name in pictures if name not in own]
-    parts += [_body([one], [name], f"Bearing {name}", of_bearings) for name, one in result.items()]
-    return _whole(title, "\n".join(parts) + tables.further(further))
+    for bearing in bearings:
+        of_one = [result.by_name[bearing] for result in results]
+        parts.append(_body(of_one, names if len(results) > 1 else [bearing], f"Bearing {bearing}", of_bearings))
+    return _whole(heading, "\n".join(parts) + tables.further(shown))
+
+
+def _shaft(result: Any, name: str, pictures: Sequence[str] | None) -> str:
+    """What the bearings of a shaft share: verdict, the bearings side by side, lives, pictures of the shaft."""
+    own, shown = of_result(result), result._shown()
+    of = f" of {safe(name)}" if name else ""
+    cards = "".join(_card(sentence) for sentence in verdict_of_shaft(result))
+    table = tables.table_of(("quantity", *shown.head[1:]), shown.rows[1:])
+    notes = "".join(f"<li>{safe(note)}</li>" for note in shown.notes)
+    wanted = [picture for picture in own if pictures is None or picture in pictures]
+    figures = "".join(_figure(own[picture], CAPTIONS[picture]) for picture in wanted if len(result.time) > 1)
+    return "\n".join(
+        [
+            f"<p class='sub'>{safe(result.assembly.title if result.assembly else '')}</p>",
+            f"<h2>Verdict of the shaft{of}</h2><div class='cards'>{cards}</div>",
+            f"<h2>The bearings side by side{of}</h2>{table}<ul class='warnings'>{notes}</ul>",
+            system_section(result),
+            f"<h2>The shaft{of}</h2><div class='pictures'>{figures}</div>",
+        ]
+    )
+
+
+def _card(sentence: Sentence) -> str:
+    grade, head, text = sentence
+    return f"<div class='card {grade}'><span class='grade'>{GRADES[grade]}</span><b>{safe(head)}</b>{safe(text)}</div>"
 
 
 def _body(results: Sequence[Result], names: Sequence[str], title: str, pictures: Sequence[str] | None) -> str:
@@ -91,7 +111,7 @@ def _body(results: Sequence[Result], names: Sequence[str], title: str, pictures:
     else:
         parts += [*judged, "<h2>Numbers</h2>", tables.key_numbers(numbers, names)]
     parts.append(_simulated(results, names))
-    parts.append(_pictures(results, names, pictures))
+    parts.append(_pictures(results, numbers, names, pictures))
     parts.append("<h2>Details</h2>")
     parts.append(tables.numbers(numbers, names, [biases(result) for result in results]))
     parts.append(ratings_section(sheets, names))
@@ -134,10 +154,7 @@ def _head(results: Sequence[Result], names: Sequence[str], title: str) -> str:
 
 
 def _verdict(result: Result, numbers: dict[str, Any], listed: list[Row], name: str) -> str:
-    cards = "".join(
-        f"<div class='card {grade}'><span class='grade'>{GRADES[grade]}</span><b>{safe(head)}</b>{safe(text)}</div>"
-        for grade, head, text in verdict(result, numbers)
-    )
+    cards = "".join(_card(sentence) for sentence in verdict(result, numbers))
     estimated, assumed = (sum(row.mark == mark for row in listed) for mark in ("estimated", "assumed"))
     notes = "".join(f"<li>{safe(text)}</li>" for text in warnings(result, numbers, estimated, assumed))
     of = f" of {safe(name)}" if name else ""
@@ -186,7 +203,22 @@ def _figure(draw: Callable[[], Axes | Figure], caption: str) -> str:
     return f"<figure><img alt='{safe(caption)}' src='{image(draw)}'><figcaption>{safe(caption)}</figcaption></figure>"
 
 
-def _pictures(results: Sequence[Result], names: Sequence[str], wanted: Sequence[str] | None) -> str:
+def told(name: str, numbers: Sequence[Mapping[str, Any]]) -> str:
+    """The numbers that belong to a picture, of each run, as a sentence behind its caption."""
+    said = []
+    for row in of_picture(name):
+        values = [number_text(row, one[row.name]) for one in numbers if one.get(row.name) is not None]
+        if values:
+            said.append(f"{row.words}: {' and '.join(values)}")
+    return f" {'; '.join(said)}." if said else ""
+
+
+def _pictures(
+    results: Sequence[Result],
+    numbers: Sequence[Mapping[str, Any]],
+    names: Sequence[str],
+    wanted: Sequence[str] | None,
+) -> str:
     from trbdyn.plot import PICTURES, drawable
 
     possible = [drawable(result) for result in results]
@@ -196,13 +228,16 @@ def _pictures(results: Sequence[Result], names: Sequence[str], wanted: Sequence[
     out: dict[bool, list[str]] = {True: [], False: []}
     for name in chosen:
         first = wanted is not None or name in FIRST_PICTURES
-        caption = CAPTIONS.get(name, name.replace("_", " "))
+        caption = CAPTIONS.get(name, name.replace("_", " ")) + told(name, numbers)
+        drawn = [
+            drawn_of(name, result, values.get("window_start")) for result, values in zip(results, numbers, strict=True)
+        ]
         if len(results) == 1:
-            out[first].append(_figure(partial(PICTURES[name][0], results[0]), caption))
+            out[first].append(_figure(partial(PICTURES[name][0], drawn[0]), caption))
             continue
         images = "".join(
             f"<img alt='{safe(label)}' src='{image(partial(PICTURES[name][0], result))}'>"
-            for result, label in zip(results, names, strict=True)
+            for result, label in zip(drawn, names, strict=True)
         )
         out[first].append(
             f"<figure class='pair'>{images}<figcaption>{safe(caption)} Left: {safe(names[0])}; right: {safe(names[1])}."

@@ -13,6 +13,7 @@ from typing import Any, Final
 
 from trbdyn.base.shown import Shown
 from trbdyn.reporting.inputs import Row
+from trbdyn.results.number import Number
 from trbdyn.results.numbers import rows
 from trbdyn.run.bias import Bias
 from trbdyn.standards.sheet import life_text
@@ -226,6 +227,13 @@ SCALES: Final[Mapping[str, tuple[tuple[float, float, str], ...]]] = {
     "m": ((1e-3, 1e3, "mm"), (0.0, 1e6, "µm")),
 }
 """Units of a report for those of the summary: from which size on, by what factor, and the unit."""
+
+
+def number_text(row: Number, value: Any) -> str:
+    """A number with its unit as the tables of a report show it."""
+    factor, unit = _scale(row.unit, [value])
+    shown = _amount(value * factor if isinstance(value, float) and factor != 1.0 else value)
+    return f"{shown} {unit}".strip()
 
 
 def _scale(unit: str, values: Sequence[Any]) -> tuple[float, str]:

@@ -13,8 +13,10 @@ from typing import Any, Final
 import numpy as np
 
 from trbdyn.model.motion import value_at, values_of
+from trbdyn.results.assembly import AssemblyResult, whole
 from trbdyn.results.fields import contacts
 from trbdyn.results.result import Result
+from trbdyn.results.rows.losses import NOT_LOST
 from trbdyn.run import estimate
 from trbdyn.run.bias import biases, preset_of
 from trbdyn.run.torque_laws import straight_rollers, torque_laws
@@ -63,6 +65,35 @@ def verdict(result: Result, numbers: dict[str, Any]) -> list[Sentence]:
     """
     parts = (_end, _life, _on_ribs, _static, _pressure, _films, _torque, _whirl, _hits, _energy, _exactness)
     return [sentence for part in parts if (sentence := part(result, numbers)) is not None]
+
+
+def verdict_of_shaft(result: AssemblyResult) -> list[Sentence]:
+    """Sentences on the bearings of a shaft together: how the run ended, torque and loss of all, and the energy of the whole."""
+    each = result.summary()
+    together, first = whole(each), next(iter(each.values()))
+    changing = [f"{name}: {values['changing']}" for name, values in each.items() if values.get("changing")]
+    waits = [name for name, values in each.items() if not _settled(values)]
+    turns = f"{first['revolutions']:.4g} turns of the {_ring(first)} ({first['duration']:.4g} s) were simulated."
+    if not result.success:
+        ended: Sentence = ("bad", "The run did not reach its end", f"{turns} {result.message}")
+    elif changing:
+        ended = ("plain", "A run that changes", f"{turns} {'; '.join(changing)}.")
+    elif waits:
+        said = f"{turns} It is not known whether the cage's motion has settled in {', '.join(waits)}."
+        ended = ("care", "Too short to tell how the cages move in the long run", said)
+    else:
+        ended = ("plain", "Settled", f"{turns} The motion settled in all bearings.")
+    found = [ended]
+    torque, power = together.get("torque"), together.get("power_loss")
+    if torque is not None:
+        of_each = ", ".join(f"{name} {values['torque']:.3g} N m" for name, values in each.items())
+        heat = "" if power is None else f" The bearings turn {power:.3g} W into heat."
+        found.append(
+            ("plain", "Torque", f"The shaft has to overcome {torque:.3g} N m of friction in all: {of_each}.{heat}")
+        )
+    if all("energy" in one.groups for one in result.parts) and (energy := _of_energy(result.energy.closure)):
+        found.append(energy)
+    return found
 
 
 def what_matters(result: Result, numbers: dict[str, Any]) -> list[str]:
@@ -313,7 +344,8 @@ def _torque(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     torque = numbers.get("torque")
     if torque is None:
         return None
-    split = {name: value for name, value in (numbers.get("torque_by_loss") or {}).items() if value}
+    parts = numbers.get("torque_by_loss") or {}
+    split = {name: value for name, value in parts.items() if value and name != NOT_LOST}
     part = ""
     if split and torque:
         largest = max(split, key=lambda name: abs(split[name]))
@@ -425,7 +457,11 @@ def _pressure(result: Result, numbers: dict[str, Any]) -> Sentence | None:
 
 def _energy(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     closure = numbers.get("energy_closure")
-    if closure is None:
+    return None if closure is None else _of_energy(closure)
+
+
+def _of_energy(closure: float) -> Sentence | None:
+    if not math.isfinite(closure):
         return None
     said = f"Work put in, energy stored and losses agree within {closure:.1g} of the dissipated work."
     if closure <= CLOSURE_GOOD:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Final, Self, overload
+from typing import TYPE_CHECKING, Any, Final, Self, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,9 +19,15 @@ from trbdyn.results.number import of_whole
 from trbdyn.results.observables.energy import EnergyAudit, energy_audit
 from trbdyn.results.result import Result, load_bearing
 from trbdyn.results.summary import Summary
+from trbdyn.results.to_xarray import dataset
+
+if TYPE_CHECKING:
+    import xarray
 
 Array = NDArray[np.float64]
 
+TOGETHER: Final = "together"
+"""Column of what is that of all bearings."""
 SCALES: Final = {"Pa": (1e-6, "MPa")}
 """Factors of units in the table of an assembly, and the units there."""
 
@@ -74,12 +80,14 @@ class AssemblyResult(Mapping[str, Result], Displayed):
 
     def _shown(self) -> Shown:
         found = self.summary()
-        rows: list[tuple[str, ...]] = [("", *self)]
+        all_of_them = whole(found)
+        rows: list[tuple[str, ...]] = [("", *self, TOGETHER)]
         for row in numbers.rows("shaft"):
             values = [one.get(row.name) for one in found.values()]
             if any(value is not None for value in values):
                 factor, unit = SCALES.get(row.unit, (1.0, row.unit))
                 words = f"{row.words}, {unit}" if unit else row.words
+                values.append(all_of_them.get(row.name))
                 rows.append((words, *("-" if value is None else f"{factor * value:.5g}" for value in values)))
         shaft = 1e6 * self.shaft_position
         mean = shaft.mean(axis=0)
@@ -92,7 +100,7 @@ class AssemblyResult(Mapping[str, Result], Displayed):
         )
         parts = tuple(one._shown() for one in found.values())
         title = f"Result: {'success' if self.success else 'failed'}"
-        return Shown(title, tuple(rows), head=("", *self), notes=notes, parts=parts)
+        return Shown(title, tuple(rows), head=("", *self, TOGETHER), notes=notes, parts=parts)
 
     @property
     def subject(self) -> Assembly | None:
@@ -151,6 +159,17 @@ class AssemblyResult(Mapping[str, Result], Displayed):
         from trbdyn.results.export import export
 
         return export(self, path, assembly=self.assembly, overwrite=overwrite)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Every recorded field of all bearings in an xarray Dataset.
+
+        Returns
+        -------
+        Dataset
+            As `Result.to_xarray` gives it for one; names of variables, and of the dimensions roller, slot and mode, begin with
+            the name of their bearing: ``left_cage_position``.
+        """
+        return dataset(self)
 
     def loads(self, name: str) -> dict[str, Array]:
         """Loads of the shaft on a bearing at each record (N), shape (T,).

@@ -119,6 +119,18 @@ def listed(place: Place, names: Iterable[object], bearings: Iterable[str] = ()) 
     return [f"{way}{row.name}" for row in wanted for way in ways if f"{way}{row.name}" in given]
 
 
+def of_picture(name: str) -> list[Number]:
+    """Rows that the caption of a picture tells."""
+    return [row for row in TABLE.values() if name in row.pictures]
+
+
+def drawn_of(name: str, result: Result, window_start: float | None) -> Result:
+    """Records that a picture is drawn of: those of the averages where it tells numbers of the window, else all."""
+    told = of_picture(name)
+    of_window = told and all(row.of == "window" for row in told)
+    return result.window(window_start) if of_window and window_start is not None else result
+
+
 def look(result: Result) -> Seen:
     """The records of a run, from which rows are computed."""
     return Seen(result, averages=averages().values())

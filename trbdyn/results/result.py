@@ -25,6 +25,7 @@ from trbdyn.results.file_format import RunInfo
 from trbdyn.results.peaks import Peaks
 from trbdyn.results.sources import Source, WindowSource
 from trbdyn.results.summary import Summary, summary
+from trbdyn.results.to_xarray import dataset
 
 if TYPE_CHECKING:
     import xarray
@@ -332,23 +333,9 @@ class Result(Derived, Displayed):
         -------
         xarray.Dataset
             Dimensions time, roller, xyz, xy, wxyz and slot; attributes ``units`` and ``long_name`` as xarray's plots
-            use them.
+            use them. The numbers of the summary are attributes of the dataset.
         """
-        import xarray
-
-        labels = {dim: list(dim) for dim in ("xyz", "xy", "wxyz")}
-        with self._source.held_open():
-            variables = {
-                name: (("time", *field.dims), self[name], {"units": field.unit, "long_name": field.text})
-                for name, field in self._fields.items()
-            }
-        time = variables.pop("time")
-        used = {dim for dims, _, _ in variables.values() for dim in dims}
-        coordinates: dict[str, Any] = {"time": time} | {dim: labels[dim] for dim in labels if dim in used}
-        if "roller" in used:
-            coordinates["roller"] = np.arange(self.n_rollers)
-        attributes = {"success": int(self.success), "message": self.message}
-        return xarray.Dataset(variables, coords=coordinates, attrs=attributes)
+        return dataset(self)
 
     def export(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> Path:
         """Write the records for another program; the ending of the file's name says for which.

@@ -52,10 +52,38 @@ def _drag_share(seen: Seen) -> float | None:
     return seen.power_split.get("drag", 0.0) / lost if lost > 0.0 else None
 
 
+def torque_by_loss(window: Result) -> dict[str, float]:
+    """Torque of the shaft by what loses it (N m), and as 'not lost' what is left to the torque: energy that parts store or give
+    back meanwhile, work of loads, and what records between impacts miss.
+    """
+    found = dict(window.torque_by_loss)
+    if found and "torque" in window.groups:
+        torque = shaft_torque(window)
+        left = torque - sum(found.values())
+        if abs(left) > DUST * abs(torque):
+            found[NOT_LOST] = left
+    return found
+
+
+def torque_by_force(window: Result) -> dict[str, float]:
+    """Mean torque of each force on the inner ring (N m), and as 'between records' what is left to the torque."""
+    found = dict(window.torque_split)
+    torque = shaft_torque(window)
+    left = torque - sum(found.values())
+    if abs(left) > DUST * abs(torque):
+        found[BETWEEN] = left
+    return found
+
+
 def has_drag(seen: Seen) -> bool:
     return seen.run.scene.effects.oil_fill > 0.0
 
 
+NOT_LOST: Final = "not_lost"
+BETWEEN: Final = "between_records"
+"""Entries of what is left of a torque beside its parts."""
+DUST: Final = 1e-9
+"""Share of a torque below which its parts are the whole."""
 LOST: Final = ("power|energy",)
 """Groups of records that tell what is lost."""
 
@@ -166,8 +194,8 @@ SPLITS: Final = (
         "torque_by_loss",
         "the same as friction torque of the shaft",
         "N m",
-        "The shaft's torque by what loses it.",
-        lambda seen: seen.window.torque_by_loss,
+        "The shaft's torque by what loses it; not lost: what parts store meanwhile, works on loads, or falls between records.",
+        lambda seen: torque_by_loss(seen.window),
         "table",
         groups=LOST,
         together="sum",
@@ -176,8 +204,8 @@ SPLITS: Final = (
         "torque_split",
         "forces on the inner ring that make this torque",
         "N m",
-        "Forces on the inner ring that make the shaft's torque.",
-        lambda seen: seen.window.torque_split,
+        "Forces on the inner ring that make the shaft's torque, at the records; what falls between them.",
+        lambda seen: torque_by_force(seen.window),
         "table",
         groups=("torque",),
     ),
