@@ -89,3 +89,30 @@ def test_the_groups_that_are_asked_for_are_kept_and_no_others(tmp_path: Path) ->
 def test_groups_that_are_none_are_refused(groups: Any) -> None:
     with pytest.raises(trb.InputError, match="save_groups"):
         trb.Simulation(paper_30310()).run(duration=1e-3, save_groups=groups)
+
+
+def guided(effects: trb.Effects) -> trb.Effects:
+    return effects.replace(guidance="outer_land", oil_fill=0.1, pocket_film=0.5)
+
+
+@pytest.mark.parametrize("change", [lambda effects: effects, guided], ids=["default", "guided, with oil"])
+def test_what_a_scene_has_switched_off_is_not_in_its_file(change: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is left out is zero at every record, or smallest gaps without a value; what is on is kept."""
+    scene = trb.cases.scene_30310(3000.0, 4930.0)
+    scene = scene.replace(effects=change(scene.effects.replace(quadrature="gauss", n_slices=4)))
+    how = {"duration": 2e-3, "save_every": 1e-4}
+    kept = trb.Simulation(scene, accuracy="fast").run(**how)
+    monkeypatch.setattr("trbdyn.run.running.absent", lambda scene, moves: ())
+    every = trb.Simulation(scene, accuracy="fast").run(**how)
+    left_out = {field.name for field in every.fields} - {field.name for field in kept.fields}
+    for name in (name for name in left_out if not name.endswith("_time")):
+        assert not np.nan_to_num(every[name]).any(), name
+    for field in kept.fields:
+        np.testing.assert_array_equal(kept[field.name], every[field.name])
+    assert {"loss_support", "loss_vibration"} <= left_out
+    on = {"land_force", "loss_land_film", "power_drag", "loss_pocket_film"}
+    assert on.isdisjoint(left_out) if change is guided else on <= left_out
+    assert kept.energy_closure == every.energy_closure
+    assert set(kept.summary()["power_split"]) == set(every.summary()["power_split"]) - {
+        name.removeprefix("loss_") for name in left_out
+    }

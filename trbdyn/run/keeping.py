@@ -16,6 +16,7 @@ from trbdyn.run.options import GROUPS, Group
 
 if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
+    from trbdyn.results.fields import Field
 
 A_TURN: Final = 32
 """Records a turn of the shaft at its highest speed."""
@@ -39,6 +40,34 @@ def groups_of(scenes: Iterable[Scene]) -> tuple[Group, ...]:
     """Those of the groups `OPTIONAL` that one scene at least has."""
     has = [{"housing": scene.housing is not None, "outer_ribs": scene.bearing.is_cylindrical} for scene in scenes]
     return tuple(group for group in OPTIONAL if any(there[group] for there in has))
+
+
+def absent(scene: Scene, *, moves: bool) -> tuple[str, ...]:
+    """Names of fields, and beginnings of names, of what a scene has switched off: they would be zero, and are not kept.
+
+    `moves` says whether a ring of the bearing moves by itself, with a shaft or with a housing.
+    """
+    effects = scene.effects
+    off: list[str] = []
+    lost: list[str] = []
+    if effects.guidance == "rollers":
+        off += ["land_", "inner_torque_land"]
+        lost += ["land", "land_film"]
+    if not effects.oil_fill > 0.0:
+        lost.append("drag")
+    if not effects.pocket_film > 0.0:
+        lost.append("pocket_film")
+    if not moves:
+        lost.append("support")
+    if scene.elastic_cage is None:
+        lost.append("vibration")
+    return (*off, *(f"{kind}_{name}" for name in lost for kind in ("power", "loss")))
+
+
+def there(fields: Iterable[Field], off: Sequence[str]) -> tuple[Field, ...]:
+    """Fields but those whose names are, or begin with, what is `absent`."""
+    starts = tuple(name for name in off if name.endswith("_"))
+    return tuple(field for field in fields if field.name not in off and not field.name.startswith(starts))
 
 
 def interval(length: float, speed_rpm: float | History) -> float:

@@ -30,6 +30,7 @@ from trbdyn.results.result import Result
 from trbdyn.run import bias, checkpoint, keeping
 from trbdyn.run.checkpoint import Checkpoint
 from trbdyn.run.faults import check_apart, culprit
+from trbdyn.run.keeping import absent, there
 from trbdyn.run.memory import Kept
 from trbdyn.run.options import RunOptions
 from trbdyn.run.process import has_a_spare_core, interrupts
@@ -131,7 +132,10 @@ class Run:
             layout += [(name, at + length, shape) for name, at, shape in model.peak_layout()]
             length += model.peak_length
         first = self.bearings[-1].part.stop if self.bearings else 0
-        kept = Kept(layout, field_table.select(fields, options.save_groups))
+        scene = bearing.scene
+        moves = bearing.seat is not None or scene.ring_body is not None or scene.housing is not None
+        chosen = there(field_table.select(fields, options.save_groups), absent(scene, moves=moves))
+        kept = Kept(layout, chosen)
         until, said = Until(options.until, self.times.size), bearing.unusual
         self.bearings.append(
             RunningBearing(bearing, layout, slice(first, first + length), until, kept, list(said), list(said))
