@@ -13,7 +13,7 @@ import xarray
 import trbdyn as trb
 from trbdyn import InputError
 from trbdyn.study import whirl
-from trbdyn.study.whirl import WhirlOnset, whirl_onset
+from trbdyn.study.whirl import CageRuns, WhirlOnset, whirl_onset
 
 SCENE = trb.cases.scene_30310(2000.0, 3080.0)
 
@@ -123,3 +123,14 @@ def test_a_run_that_failed_is_no_cage_at_rest() -> None:
     )
     assert WhirlOnset(data).onset("equal") == (1000.0, 3000.0)
     assert WhirlOnset(data.isel(speed_rpm=slice(1, 3))).onset("equal") == (0.0, 3000.0)
+
+
+def test_a_map_of_a_pair_changes_the_force_along_its_shaft_alone() -> None:
+    pair = trb.load_assembly("pair_30310")
+    before = np.sum([load.force for load in pair.loads], axis=0)
+    case = CageRuns(pair, ["equal"], None, 40.0, {})._case("equal", 1000.0, 1500.0, 40.0)
+    assert isinstance(case.scene, trb.Assembly)
+    after = np.sum([load.force for load in case.scene.loads], axis=0)
+    np.testing.assert_allclose(after, [*before[:2], 1500.0])
+    assert case.scene.speed_rpm == 1000.0
+    assert case.parameters == {"start": "equal", "speed_rpm": 1000.0, "axial_load": 1500.0}

@@ -407,6 +407,12 @@ class Assembly(TurningRings, Model):
         load = ShaftLoad(position=self.shaft.mass_position, force=(0.0, -radial_load, axial_load))
         return {"assembly.speed_rpm": speed_rpm, "loads": [load.to_dict()]}
 
+    def with_axial_load(self, axial_load: float) -> Self:
+        """The assembly with another force along its shaft (N), on the centre of mass; what acts across the shaft stays."""
+        across = [one.replace(force=(*one.force[:2], 0.0)) for one in self.loads]
+        along = ShaftLoad(position=self.shaft.mass_position, force=(0.0, 0.0, axial_load))
+        return self.replace(loads=(*across, along))
+
     def orbit_speed(self, time: float) -> float:
         """Speed at which the slowest of the cages goes round the axis in pure rolling (rad/s)."""
         ratios = [one.bearing.geometry.cage_speed_ratio for one in self.bearings]

@@ -273,6 +273,10 @@ class Scene(TurningRings, Model):
         """Overrides of a study that put other speed (rpm) and loads (N) in place of its own."""
         return {"scene.speed_rpm": speed_rpm, "scene.axial_load": axial_load, "scene.radial_load": radial_load}
 
+    def with_axial_load(self, axial_load: float) -> Self:
+        """The scene with another axial load (N)."""
+        return self.replace(axial_load=axial_load)
+
     def orbit_speed(self, time: float) -> float:
         """Speed at which rollers and cage go round the axis in pure rolling (rad/s)."""
         inner, outer = (value_at(speed, time) for speed in (self.speed_rpm, self.outer_speed_rpm))

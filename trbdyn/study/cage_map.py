@@ -10,6 +10,7 @@ import numpy as np
 
 from trbdyn.base.expected import expect
 from trbdyn.base.shown import Shown
+from trbdyn.model.assembly import Assembly, Subject
 from trbdyn.model.scene import Scene
 from trbdyn.run.options import RunOptions
 from trbdyn.study.answer import Answer
@@ -74,7 +75,7 @@ def _told(kind: str, orbit: float, decided: bool, hits: float) -> str:
 
 
 def cage_map(
-    scene: Scene,
+    subject: Subject,
     speeds: Sequence[float],
     axial_loads: Sequence[float],
     *,
@@ -83,19 +84,20 @@ def cage_map(
     options: RunOptions | None = None,
     **how: Unpack[Running],
 ) -> CageMap:
-    """What the cage of a scene does at each of some speeds and axial loads, from rest and from a large whirl.
+    """What the cage of a scene, or those of bearings on a shaft, do at each of some speeds and axial loads, from rest and from a
+    large whirl.
 
     A run ends when it is decided: after 40 turns of the cage where class and orbit stand; where they do not, after 160 or 640,
     as in `whirl_onset`.
 
     Parameters
     ----------
-    scene : Scene
-        Gives all but speed, axial load and start.
+    subject : Scene or Assembly
+        Gives all but speed, axial load and start. Of several cages the one that moves most counts, as in `whirl_onset`.
     speeds : sequence of float
         Speeds of the shaft (rpm), all of one sign, none 0.
     axial_loads : sequence of float
-        Axial loads (N).
+        Axial loads (N); of an assembly forces along its shaft on the centre of mass, while what acts across it stays.
     starts : sequence of {'equal', 'whirl'}
         Starts.
     longest : float
@@ -122,9 +124,9 @@ def cage_map(
     >>> str(found.data.kind.values[0, 0, 0])
     'stable'
     """
-    expect("scene", scene, Scene)
+    expect("scene", subject, Scene, Assembly)
     turning, loads = speeds_of(speeds), sorted(numbers_of("axial_loads", axial_loads, "N"))
-    runs = CageRuns(scene, starts, options, longest, how)
+    runs = CageRuns(subject, starts, options, longest, how)
     points = [(start, speed, load) for start in runs.starts for load in loads for speed in turning]
     runs.add(points)
     places = {

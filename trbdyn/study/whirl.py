@@ -282,10 +282,10 @@ class CageRuns:
         )
 
     def _case(self, start: str, speed: float, load: float | None, turns: float) -> Case:
-        changes = {"speed_rpm": speed} | ({} if load is None else {"axial_load": load})
-        parameters = {"start": start, **changes}
+        parameters = {"start": start, "speed_rpm": speed} | ({} if load is None else {"axial_load": load})
         try:
-            built = self.subject.replace(**changes)
+            built = self.subject if load is None else self.subject.with_axial_load(load)
+            built = built.replace(speed_rpm=speed)
             for prefix in built.parts:
                 built = built.with_part(prefix, start=STARTS[start])
             if isinstance(built, Scene):
