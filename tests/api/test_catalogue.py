@@ -445,7 +445,7 @@ def test_an_estimated_cage_follows_its_material() -> None:
         trb.Simulation(trb.Scene(light, speed_rpm=300.0, axial_load=3000.0))
 
 
-ROWS = trb.designations()
+ROWS = {name: row for name, row in trb.designations().items() if row.flanges is None}
 
 
 def test_rows_of_the_table() -> None:
@@ -478,6 +478,20 @@ def test_rows_of_the_table_run(name: str) -> None:
         ("lm67048/10", "LM67048/LM67010"),
         ("LM67048", "LM67048/LM67010"),
         ("25580/25520", "25580/25520"),
+        ("LM67048 - LM67010", "LM67048/LM67010"),
+        ("LM67048-LM67010", "LM67048/LM67010"),
+        ("7208A", "30208"),
+        ("7308 A", "30308"),
+        ("7508", "32208"),
+        ("27310A", "31310"),
+        ("2007108", "32008"),
+        ("NU210", "NU210E"),
+        ("NU 210 ECP", "NU210E"),
+        ("NJ2210-E-TVP2", "NJ2210E"),
+        ("NUP 310 ECML/C3", "NUP310E"),
+        ("N 212 ECP", "N212E"),
+        ("NU 1010", "NU1010"),
+        ("NU 1010 ECP", "NU1010E"),
     ],
 )
 def test_designations_as_they_are_written(asked: str, found: str) -> None:
@@ -491,6 +505,15 @@ def test_designations_as_they_are_written(asked: str, found: str) -> None:
         ("25580", "must say which cup: 25580/25520, 25580/25523"),
         ("99999", "not in the table"),
         (32208, "must be a text"),
+        ("6208", "is a deep groove ball bearing"),
+        ("6318-2Z", "is a deep groove ball bearing"),
+        ("7208", "angular contact ball bearing of ISO; with an A, as 7208A, the tapered bearing of GOST"),
+        ("7208 BEP", "an angular contact ball bearing"),
+        ("22210 E", "is a spherical roller bearing"),
+        ("HK2020", "is a needle roller bearing"),
+        ("51108", "is a thrust ball bearing"),
+        ("NN3010", "is a cylindrical bearing of two rows"),
+        ("NJ2211X", "did you mean NJ2211E"),
     ],
 )
 def test_designations_that_are_refused(asked: Any, said: str) -> None:
@@ -516,6 +539,34 @@ def test_a_designation_says_what_is_fact_and_what_is_estimated() -> None:
     better = trb.Bearing.named("L44649", e=0.37, n_rollers=18)
     assert (better.ratings.e, better.n_rollers) == (0.37, 18)
     assert "n_rollers" not in {one.path for one in better.estimated}
+
+
+def test_e_of_inch_rows() -> None:
+    """e of makers' catalogues: 31594/31520 0.40, 16150/16284 0.40, 418/414 0.26, 64450/64700 0.52."""
+    for name, e in (("31594/31520", 0.40), ("16150/16284", 0.40), ("418/414", 0.26), ("64450/64700", 0.52)):
+        assert trb.designation(name).recalled_e == e
+        assert 1.5 * math.tan(math.radians(trb.Bearing.named(name).cup_half_angle_deg)) == pytest.approx(e)
+
+
+def test_the_load_centre_of_a_page_is_taken() -> None:
+    """30208: a = 16 mm from the outer ring's face at the small ends, 3.75 mm inside of the other face (T = 19.75 mm)."""
+    given = {"bore": 0.040, "outside": 0.080, "width": 0.01975, "C": 62.9e3, "e": 0.37}
+    bearing = trb.Bearing.from_catalogue(**given, a=0.016)
+    assert bearing.ratings.load_centre == 0.016
+    shaft = trb.Shaft.hollow_cylinder(mass=6.0, outer_diameter=0.04, length=0.3)
+    pair = trb.Assembly.pair(bearing, "back to back", spread=0.15, shaft=shaft, speed_rpm=1000)
+    assert [one.outer_face for one in pair.bearings] == pytest.approx([-0.075 + 0.016, 0.075 - 0.016])
+    assert "left, face of the outer ring" in pair._shown().text()
+    with pytest.raises(trb.InputError, match=r"a = 0\.06 : must be from .* distance of the load centre"):
+        trb.Bearing.from_catalogue(**given, a=0.06)
+
+
+@pytest.mark.parametrize("e", [0.14, 1.17, 1.5])
+def test_flat_and_steep_angles(e: float) -> None:
+    """From 5 to 45 deg, which docs/limits.md promises: e = 1.5 tan(alpha)."""
+    bearing = trb.Bearing.from_catalogue(bore=0.1, outside=0.18, width=0.037, C=190e3, e=e)
+    assert math.tan(math.radians(bearing.cup_half_angle_deg)) == pytest.approx(e / 1.5)
+    assert trb.Simulation(trb.Scene(bearing, speed_rpm=300.0, axial_load=8e3)).equilibrium.outer_load.max() > 0.0
 
 
 HEAD = "name,d,D,T,C,C0,e,Y,source\n"

@@ -447,6 +447,9 @@ class Assembly(TurningRings, Model):
             rows.append(
                 (f"{name}, load centre", f"{1e3 * one.position:.4g}", "mm", f"small ends {one.small_ends}, {set_by}")
             )
+            if one.outer_face is not None:
+                where = "at the small ends, by a of its page"
+                rows.append((f"{name}, face of the outer ring", f"{1e3 * one.outer_face:.4g}", "mm", where))
         if (around := self.shared_housing) is not None:
             row = ("mass of the housing", f"{around.mass:g}", "kg", f"centre at {1e3 * around.mass_position:.4g} mm")
             rows.insert(1, row)

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from difflib import get_close_matches
 from typing import Any, Final
 
@@ -20,7 +21,7 @@ from trbdyn.base.validation import number_of, whole_number_of
 from trbdyn.errors import MISSING, InputError, Problem
 from trbdyn.model.assumed import ISO_LENGTH, ISO_LONG, ISO_SHORT, scaled
 from trbdyn.model.catalogue_cylinders import check_kind, usual_clearance, with_raceways
-from trbdyn.model.catalogue_rollers import MAKER, Page, Rollers, solve
+from trbdyn.model.catalogue_rollers import FILL_BAND, MAKER, Page, Rollers, solve
 from trbdyn.model.core_table import PARAMETERS
 from trbdyn.model.estimated import Estimated
 from trbdyn.model.ratings import Ratings
@@ -58,7 +59,6 @@ NAMES_OF_CATALOGUES: Final = {
 NOT_USED: Final = {
     "B": "is the width of the cone, which is not used: width is T, over cone and cup; cup_width is that of the cup, often C; "
     "of a cylindrical bearing width is B",
-    "a": "is the distance of the pressure centre, which follows from the angle of the cup: leave it out",
 }
 """Numbers of a catalogue page that are not taken, and why."""
 STATIC_SHARE: Final = (0.6, 4.0)
@@ -88,6 +88,7 @@ NUMBERS: Final = {
     "limiting_speed_rpm": "rpm",
     "F": "m",
     "E": "m",
+    "a": "m",
 }
 """Numbers of a catalogue page that are > 0, with their units; the first four are needed."""
 OTHERS: Final = ("n_rollers", "flanges", "radial_clearance", "name")
@@ -146,8 +147,11 @@ def fields_from_catalogue(numbers: Mapping[str, Any]) -> dict[str, Any]:
             clearance = estimates[-1].value
         cylinder = {"flanges": flanges, "radial_clearance": clearance}
     sizes = {name: float(given[name]) for name in ("bore", "outside", "width")}
+    _check_load_centre(get("a"), given["width"], given["outside"], angle)
     factors = ("e", "Y", "Y0", "reference_speed_rpm", "limiting_speed_rpm")
-    ratings = Ratings(dynamic=C, static=C0, fatigue_limit=get("Cu"), **{name: get(name) for name in factors})
+    ratings = Ratings(
+        dynamic=C, static=C0, fatigue_limit=get("Cu"), load_centre=get("a"), **{name: get(name) for name in factors}
+    )
     name = get("name") or "x".join(f"{1e3 * size:g}" for size in sizes.values())
     return _fields(found, get("cage_mass"), estimates, cylinder) | {"name": name, **sizes, "ratings": ratings}
 
@@ -172,6 +176,17 @@ def _check_share(key: str, value: float | None, whole: str, size: float, share: 
     raise InputError.of(
         key, value, f"must be from {low:.3g} to {high:.3g}, {share[0]:g} to {share[1]:g} times {whole} (N){kilo}"
     )
+
+
+def _check_load_centre(a: float | None, width: float, outside: float, angle: float) -> None:
+    """The load centre lies where normals of a cup of this angle can cross the axis."""
+    most = width + 0.5 * outside * math.tan(math.radians(angle))
+    if a is not None and not 0.3 * width <= a <= most:
+        limit = (
+            f"must be from {0.3 * width:.4g} to {most:.4g}: distance of the load centre from the outer ring's face at the small "
+            f"ends, for a half angle of {angle:.3g} deg (m)"
+        )
+        raise InputError.of("a", a, limit)
 
 
 def _positive(key: str, value: object) -> None:
@@ -260,6 +275,9 @@ def _roller_estimates(page: Page, found: Rollers, factor: float) -> list[Estimat
     out = []
     usual, _ = page.diameters
     kind = page.usual
+    if page.angle == 0.0:
+        taken = found.count * found.diameter / (math.pi * found.pitch)
+        kind = replace(kind, fill=kind.fill.around(taken, FILL_BAND))
     diameters = (
         (usual.low * page.height, usual.high * page.height) if page.diameter is None else (page.diameter, page.diameter)
     )
@@ -296,7 +314,7 @@ def _roller_estimates(page: Page, found: Rollers, factor: float) -> list[Estimat
     if page.n_rollers is None:
         few = math.floor(page.count(kind.fill.low, diameters[1]))
         many = math.floor(page.count(kind.fill.high, diameters[0]))
-        source = f"rollers take {kind.fill.low:g} to {kind.fill.high:g} of the pitch circle in real bearings"
+        source = f"rollers take {kind.fill.low:.2g} to {kind.fill.high:.2g} of the pitch circle in real bearings"
         out.append(Estimated.of("n_rollers", found.count, max(3, few), many, "1", source))
     return out
 

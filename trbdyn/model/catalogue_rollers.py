@@ -22,6 +22,11 @@ class Usual:
     low: float  # lower bound of the estimate
     high: float  # upper bound of the estimate
 
+    def around(self, value: float, off: float) -> Usual:
+        """The same with bounds that are no farther away from a value."""
+        low, high = max(self.low, value - off), min(self.high, value + off)
+        return replace(self, low=min(low, value), high=max(high, value))
+
     def at(self, multiplier: float, weight: float) -> float:
         """The ratio where all of them give way together by `multiplier`; `weight` is its exponent in C."""
         moved = self.value * math.exp(multiplier * weight * self.spread**2)
@@ -60,11 +65,16 @@ TAPERED: Final = Ratios(PITCH, SECTION, LENGTH, FILL)
 CYLINDRICAL: Final = Ratios(
     pitch=Usual(1.010, 0.004, 0.995, 1.020),
     section=Usual(0.54, 0.06, 0.42, 0.62),
-    length=Usual(0.60, 0.08, 0.42, 0.80),
-    fill=Usual(0.81, 0.025, 0.74, 0.88),
+    length=Usual(0.60, 0.08, 0.33, 0.80),
+    fill=Usual(0.81, 0.025, 0.60, 0.88),
 )
-"""The same of cylindrical bearings, whose length is over the width B: raceways F and E and ratings C and C0 of 28 of them, see
-docs/theory/estimates.md#cylindrical-bearings."""
+"""The same of cylindrical bearings, whose length is over the width B: raceways F and E and ratings C and C0 of 28 of them; the
+lower bounds of length and fill are those of older types and of the series 10 (docs/theory/estimates.md#cylindrical-bearings)."""
+FILL_BAND: Final = 0.07
+"""Band of that share of the pitch circle about the one that was found, within its bounds: what 28 bearings scatter by."""
+NUMBER_SHARE: Final = 0.3
+"""Share of an unusual number times length, as C0 tells it, that the number takes, in logarithms; the length takes the rest. An NU
+1010 with 17 rollers has 0.38, an NU 205 with 13 has 0.2."""
 NEAR: Final = 0.9
 """C of a catalogue over the smallest one that was found possible, down to which the smallest rollers are taken."""
 MAKER: Final = Usual(1.0, 0.20, 0.80, 1.50)
@@ -166,6 +176,10 @@ class Page:
         return Usual(min(max(value, low), high), total**-0.5, low, high), _IN_C["diameter_of_counted"]
 
 
+def _ends(usual: Usual) -> tuple[float, float]:
+    return usual.low, usual.high
+
+
 @dataclass(frozen=True)
 class Rollers:
     """Sizes that are looked for (m); the number of rollers need not be whole while they are."""
@@ -193,6 +207,19 @@ class Rollers:
     def with_static_rating(self, static: float) -> Rollers:
         """The same with the length that has this rating of ISO 76 (N)."""
         return replace(self, length=self.length * static / rating_iso76(**self._sizes))
+
+    def shared(self, static: float, page: Page) -> Rollers:
+        """The same with the number and the length that have this rating of ISO 76 (N), both unusual by `NUMBER_SHARE`."""
+        usual = page.usual
+        one = page.count(1.0, self.diameter)
+        unusual = self.with_static_rating(static).length * self.count / (page.along() * usual.length.value * one)
+        fill = usual.fill.value * (unusual / usual.fill.value) ** NUMBER_SHARE
+        least, most = (
+            self.count * self.with_static_rating(static).length / page.along(end) for end in _ends(usual.length)
+        )
+        count = min(max(fill * one, most), least)
+        count = min(max(count, usual.fill.low * one), usual.fill.high * one)
+        return replace(self, count=count).with_static_rating(static)
 
     def walls(self, page: Page) -> float:
         """Thickness of the thinner ring where it is thinnest (m): the cup at the large ends, the cone at the small ones.
@@ -231,8 +258,10 @@ def solve(page: Page, C: float) -> tuple[Rollers, float]:
         )
         return told(Rollers(count, diameter, length, page.pitch_diameter, page.angle))
 
-    def told(rollers: Rollers) -> Rollers:
-        return rollers if page.static is None or page.length is not None else rollers.with_static_rating(page.static)
+    def told(rollers: Rollers, *, counted: bool = page.n_rollers is not None) -> Rollers:
+        if page.static is None or page.length is not None:
+            return rollers
+        return rollers.with_static_rating(page.static) if counted else rollers.shared(page.static, page)
 
     def factor(multiplier: float) -> float:
         return MAKER.at(multiplier, 1.0) if page.maker_factor is None else page.maker_factor
@@ -250,14 +279,14 @@ def solve(page: Page, C: float) -> tuple[Rollers, float]:
     if NEAR * lowest <= C < lowest and page.maker_factor is None:
         smallest = sizes(-_LARGEST)
         count = smallest.count if page.n_rollers is not None else max(3, math.floor(smallest.count + 0.5))
-        smallest = told(replace(smallest, count=count))
+        smallest = told(replace(smallest, count=count), counted=True)
         return smallest, C / smallest.rating
     if not lowest <= C <= highest:
         raise _wrong_rating(page, C, lowest, highest)
     found = sizes(brentq(above, -_LARGEST, _LARGEST, xtol=1e-10))
     if page.n_rollers is None:
         ceiling = page.count(page.usual.fill.high, found.diameter)
-        found = told(replace(found, count=max(3, math.floor(min(found.count + 0.5, ceiling + 1e-9)))))
+        found = told(replace(found, count=max(3, math.floor(min(found.count + 0.5, ceiling + 1e-9)))), counted=True)
     if page.static is not None and page.length is None:
         _check_static(page, found)
     return found, C / found.rating

@@ -40,6 +40,7 @@ class Catalogued(Model):
         flanges: str | None = None,
         F: float | None = None,
         E: float | None = None,
+        a: float | None = None,
         radial_clearance: float | None = None,
         name: str = "",
         **others: Any,
@@ -73,6 +74,9 @@ class Catalogued(Model):
             Type of a cylindrical bearing; without it the bearing is tapered. With it C0 tells the rollers' number times length.
         F, E : float, optional
             Diameters of the raceways of the inner and the outer ring of a cylindrical bearing (m).
+        a : float, optional
+            Distance of the load centre of a tapered bearing from the face of its outer ring at the small ends (m): tables of an
+            `Assembly` then say where that face is.
         radial_clearance : float, optional
             Clearance of a cylindrical bearing in operation (m); by default half of group N of ISO 5753-1.
         name : str

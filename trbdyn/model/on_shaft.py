@@ -242,6 +242,14 @@ class ShaftBearing(Model):
         return 1.0 if self.small_ends == "right" else -1.0
 
     @property
+    def outer_face(self) -> float | None:
+        """Position of the outer ring's face at the small ends of the rollers along the shaft (m); None where the page does not
+        say how far it is from the load centre.
+        """
+        distance = self.bearing.ratings.load_centre
+        return None if distance is None else self.position + self.side * distance
+
+    @property
     def centre_plane(self) -> float:
         """Position of the roller-centre plane along the shaft (m)."""
         return self.position + self.side * load_centre_offset(self.bearing)

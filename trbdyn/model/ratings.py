@@ -29,6 +29,8 @@ class Ratings(Model):
         Speed that the catalogue permits for the heat made (rpm).
     limiting_speed_rpm : float, optional
         Speed that the catalogue permits for the cage and the forces (rpm).
+    load_centre : float, optional
+        a, distance of the load centre of a tapered bearing from the face of its outer ring at the small ends of the rollers (m).
     """
 
     dynamic: Annotated[Number, unit("N", gt=0, le=1e9)] | None = None
@@ -39,6 +41,7 @@ class Ratings(Model):
     Y0: Annotated[Number, unit("1", gt=0, le=10)] | None = None
     reference_speed_rpm: Annotated[Number, unit("rpm", gt=0, le=1e6)] | None = None
     limiting_speed_rpm: Annotated[Number, unit("rpm", gt=0, le=1e6)] | None = None
+    load_centre: Annotated[Number, unit("m", gt=0, le=10)] | None = None
 
 
 def rating_iso281(

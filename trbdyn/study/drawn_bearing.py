@@ -16,7 +16,7 @@ from collections.abc import Mapping
 from typing import Any, Final, TypeVar
 
 from trbdyn.model.bearing import Bearing
-from trbdyn.model.catalogue_rollers import CYLINDRICAL, TAPERED, Usual
+from trbdyn.model.catalogue_rollers import CYLINDRICAL, FILL_BAND, TAPERED, Usual
 
 V = TypeVar("V")
 
@@ -44,7 +44,9 @@ def belongs_together(
     whole = bearing.inputs()["roller"].get("total_length")
     if LINE in drawn and whole is not None and (LENGTH not in drawn or LENGTH in free):
         found[LENGTH] = drawn.get(LENGTH, whole) + drawn[LINE] - bearing.roller.effective_length
-    usual = (CYLINDRICAL if bearing.is_cylindrical else TAPERED).fill
+    usual = TAPERED.fill
+    if bearing.is_cylindrical:
+        usual = CYLINDRICAL.fill.around(bearing.n_rollers / _around(bearing, {}), FILL_BAND)
     if COUNT in free:
         share = usual.low + bands[COUNT][2] * (usual.high - usual.low)
         found[COUNT] = _whole(_around(bearing, drawn), share, usual)
