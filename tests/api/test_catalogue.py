@@ -612,7 +612,7 @@ def test_a_table_of_ones_own(tmp_path: Path) -> None:
         ({"C0": 20e3}, "0.6 to 4 times C"),
         ({"C0": 86.5e3, "Cu": 9.8}, "9.8 kN are 9800 N"),
         ({"B": 0.023}, "width of the cone"),
-        ({"a": 0.019}, "pressure centre"),
+        ({"a": 0.19}, "distance of the load centre"),
         ({"Y1": 1.6}, "is called Y here"),
         ({"Pu": 9800.0}, "is called Cu here"),
         ({"widht": 0.02}, "did you mean width"),

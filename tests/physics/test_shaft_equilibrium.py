@@ -272,3 +272,30 @@ def test_what_nothing_holds_is_said() -> None:
     ]
     with pytest.raises(InputError, match="must differ"):
         Assembly(shaft=SHAFT, bearings=names, speed_rpm=1000.0)
+
+
+@pytest.mark.parametrize("name", ["32208", "30310", "LM67048/10"])
+def test_axial_stiffness_beside_the_formula_of_makers(name: str) -> None:
+    """delta = 7.7e-5 Q^0.9/(l^0.8 sin alpha) is that of straight rollers, within 2 %; the sheet says what the profile does."""
+    bearing = trb.Bearing.named(name)
+    straight = bearing.replace({"roller.profile": trb.Profile.straight()})
+    angle, length = math.radians(bearing.cup_half_angle_deg), 1e3 * bearing.roller.effective_length
+    for share in (0.02, 0.1):
+        axial = share * bearing.ratings.dynamic
+        load = axial / (bearing.n_rollers * math.sin(angle))
+        formula = 1e-3 * 7.7e-5 * load**0.9 / (length**0.8 * math.sin(angle))
+        plain, profiled = (
+            trb.stiffness(trb.Scene(one, speed_rpm=0.0, axial_load=axial)) for one in (straight, bearing)
+        )
+        assert -plain.displacement[2] == pytest.approx(formula, rel=0.02)
+        assert plain.matrix[2, 2] == pytest.approx(axial / (0.9 * formula), rel=0.02)
+        assert plain.with_straight_rollers is None
+        assert profiled.with_straight_rollers == pytest.approx(plain.matrix[2, 2] / profiled.matrix[2, 2], rel=1e-6)
+        assert 1.0 < profiled.with_straight_rollers < 2.0
+    assert "a profile that nobody gave. With straight ones" in str(profiled)
+
+
+def test_the_sheet_of_a_pair_says_what_the_profile_does() -> None:
+    found = trb.stiffness(trb.load_assembly("pair_30310"))
+    assert found.with_straight_rollers > 1.0
+    assert "With straight ones" in str(found)

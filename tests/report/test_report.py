@@ -314,3 +314,21 @@ def test_further_tables(result: trb.Result, tmp_path: Path) -> None:
     assert cells(text, "shaft m6")[0] == "9.0 to 37.0"
     with pytest.raises(trb.InputError, match=r"tables\[0\]"):
         trb.report(result, tmp_path / "r.html", tables=["fits"], overwrite=True)
+
+
+def test_a_ramp_from_rest_has_its_torque_compared_at_speed(tmp_path: Path) -> None:
+    """At rest nothing is lost, and torques at the start have no ratio: they are compared where the speed is largest."""
+    from trbdyn.run.torque_laws import straight_rollers, torque_laws
+
+    bearing = trb.Bearing.from_catalogue(bore=0.050, outside=0.110, width=0.02925, C=125e3, e=0.35)
+    ramp = trb.Scene(bearing, speed_rpm=trb.History.ramp(0.0, 0.02, 0.0, 1000.0), axial_load=3000.0)
+    steady = ramp.replace(speed_rpm=1000.0)
+    assert straight_rollers(ramp) == pytest.approx(straight_rollers(steady))
+    assert straight_rollers(ramp.replace(speed_rpm=0.0))[0] is None
+    assert torque_laws(ramp).factors == pytest.approx(torque_laws(steady).factors)
+    page = trb.report(trb.Simulation(ramp).run(duration=5e-4), tmp_path / "ramp.html", pictures=[])
+    text = page.read_text(encoding="utf-8")
+    assert re.search(
+        r"With straight rollers the torque would be \d\.\d+ and the largest pressure would be 0\.\d+", text
+    )
+    assert not re.search(r"\bnan\b", text)

@@ -511,9 +511,11 @@ def warnings(result: Result, numbers: dict[str, Any], estimated: int, assumed: i
             f"{assumed} inputs are assumed by the package because no source gives them, see the table of inputs."
         )
     if (straight := straight_rollers(result.scene)) is not None:
+        torque, pressure = straight
+        both = "" if torque is None else f"the torque would be {torque:.2g} and "
         out.append(
-            f"Nobody gave the profile of the rollers; it is that of ISO/TS 16281. With straight rollers the torque would be "
-            f"{straight[0]:.2g} and the largest pressure {straight[1]:.2g} times as large."
+            f"Nobody gave the profile of the rollers; it is that of ISO/TS 16281. With straight rollers {both}the largest "
+            f"pressure would be {pressure:.2g} times as large."
         )
     interval = float(np.median(np.diff(result["time"]))) if len(result) > 2 else math.nan
     if numbers.get("pocket_force_peak") and "peaks" not in result.groups:

@@ -16,8 +16,10 @@ from trbdyn.base.expected import expect
 from trbdyn.base.shipped import DATA
 from trbdyn.model.assembly import Assembly, Subject
 from trbdyn.model.effects import Effects
+from trbdyn.model.motion import is_constant, knot_times
 from trbdyn.model.roller import Profile
 from trbdyn.model.scene import Scene
+from trbdyn.model.start import Start
 from trbdyn.run.simulation import Simulation
 
 DEFENDED: Final = ("zhou_hoeprich", "biboulet_houpert")
@@ -67,6 +69,7 @@ def torque_laws(subject: Subject) -> TorqueLaws | None:
     parts = [part for part in subject.parts.values() if part.effects.films and part.effects.rolling_resistance]
     if not parts:
         return None
+    subject = at_largest_speed(subject)
     # an elastic cage has no part in it, and its file is not read
     subject = subject.replace({f"{prefix}elastic_cage": None for prefix in subject.parts})
     own = _power(subject)
@@ -83,23 +86,31 @@ def torque_laws(subject: Subject) -> TorqueLaws | None:
     return TorqueLaws(factors, record_words() if is_known else "")
 
 
-def straight_rollers(scene: Scene) -> tuple[float, float] | None:
-    """Torque and largest pressure with straight rollers over those with a profile that nobody gave, at the equilibrium (1);
-    None where the profile is given, or straight.
+def at_largest_speed(subject: Subject) -> Subject:
+    """A subject that starts where its speed is largest, if speeds change: at rest nothing is lost that can be compared."""
+    speeds = (subject.speed_rpm, subject.outer_speed_rpm)
+    if all(is_constant(one) for one in speeds):
+        return subject
+    times = knot_times(speeds, subject.part.start.time)
+    fastest = max(times.tolist(), key=lambda time: abs(subject.rolling_rpm(time)))
+    return subject.replace({f"{prefix}start": Start(time=fastest) for prefix in subject.parts})
+
+
+def straight_rollers(scene: Scene) -> tuple[float | None, float] | None:
+    """Torque and largest pressure with straight rollers over those with a profile that nobody gave, at the equilibrium (1), where
+    the speed is largest; None where the profile is given, or straight, and no torque where nothing turns.
     """
-    bearing, scene = scene.bearing, scene.replace(elastic_cage=None)
+    bearing, still = scene.bearing, at_largest_speed(scene.replace(elastic_cage=None))
     if bearing.roller.profile.kind == "straight" or not any(
         path.startswith("roller.profile") for path in bearing.assumed
     ):
         return None
     profiled, straight = (
-        Simulation(one).contacts() for one in (scene, scene.replace({"bearing.roller.profile": Profile.straight()}))
+        Simulation(one).contacts() for one in (still, still.replace({"bearing.roller.profile": Profile.straight()}))
     )
-    power, pressure = (
-        float(operation(straight[name]) / operation(profiled[name]))
-        for name, operation in (("power", np.sum), ("raceway_pressure", np.max))
-    )
-    return power, pressure
+    lost = float(np.sum(profiled["power"]))
+    pressure = float(np.max(straight["raceway_pressure"]) / np.max(profiled["raceway_pressure"]))
+    return float(np.sum(straight["power"])) / lost if lost > 0.0 else None, pressure
 
 
 def _power(subject: Subject) -> float:

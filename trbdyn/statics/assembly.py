@@ -218,6 +218,8 @@ class ShaftEquilibrium(Tabled):
             roller_mass=mass,
             pitch_diameter=max(one.bearing.pitch_diameter for one in self.assembly.bearings),
             speed_rpm=value_at(self.assembly.speed_rpm, self.time),
+            subject=self.assembly,
+            time=self.time,
         )
 
     def _at(self, position: float) -> Balance:

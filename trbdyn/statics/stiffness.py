@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
-from functools import singledispatch
+from functools import cached_property, singledispatch
 from typing import Any, Final
 
 import numpy as np
@@ -21,6 +21,7 @@ from trbdyn.model.assembly import Assembly
 from trbdyn.model.flatten import ring_load
 from trbdyn.model.motion import value_at
 from trbdyn.model.ring_body import RingBody
+from trbdyn.model.roller import Profile
 from trbdyn.model.scene import Scene
 from trbdyn.statics.core_model import normal_contacts
 from trbdyn.statics.equilibrium import EquilibriumSolver, nominal_angles
@@ -72,6 +73,8 @@ class Stiffness(Tabled):
         Of the bearing, of several the largest (m).
     speed_rpm : float
         Speed of the shaft (rpm).
+    subject : Scene, Assembly or None
+        Whose stiffness it is, at the time `time` (s).
     """
 
     matrix: Array
@@ -80,6 +83,39 @@ class Stiffness(Tabled):
     roller_mass: Array
     pitch_diameter: float
     speed_rpm: float
+    subject: Scene | Assembly | None = None
+    time: float = 0.0
+
+    @cached_property
+    def with_straight_rollers(self) -> float | None:
+        """Axial stiffness with straight rollers over this one (1): what a profile that is not known leaves open. Makers' formula
+        for the axial displacement of tapered bearings is that of straight rollers. None where rollers are straight, bearings are
+        cylindrical, or straight rollers have no equilibrium.
+        """
+        if self.subject is None:
+            return None
+        parts = {prefix: part.bearing for prefix, part in self.subject.parts.items()}
+        profiled = {prefix for prefix, one in parts.items() if one.roller.profile.kind != "straight"}
+        if not profiled or any(one.is_cylindrical for one in parts.values()) or not self.matrix[2, 2] > 0.0:
+            return None
+        straight = {f"{prefix}bearing.roller.profile": Profile.straight() for prefix in profiled}
+        try:
+            other = stiffness(self.subject.replace(straight), time=self.time)
+        except LoadError:
+            return None
+        return float(other.matrix[2, 2] / self.matrix[2, 2])
+
+    def _profile(self) -> tuple[str, ...]:
+        """What the profile of the rollers does to the stiffness along the axis."""
+        times = self.with_straight_rollers
+        if times is None or self.subject is None:
+            return ()
+        assumed = any("roller.profile" in path for part in self.subject.parts.values() for path in part.bearing.assumed)
+        given = "a profile that nobody gave" if assumed else "the given profile"
+        return (
+            f"Rollers have {given}. With straight ones, for which makers' formula of the axial displacement holds "
+            f"(7.7e-5 Q^0.9/(l^0.8 sin alpha), N and mm), the stiffness along the axis is {times:.3g} times this one.",
+        )
 
     def _shown(self) -> Shown:
         names = ("force_x", "force_y", "force_z", "moment_x", "moment_y")
@@ -90,6 +126,7 @@ class Stiffness(Tabled):
             head=("per m and rad", *COORDINATES),
             notes=(
                 "Forces in N, moments in N m, about the roller-centre plane; rollers stay in equilibrium, without friction.",
+                *self._profile(),
             ),
         )
 
@@ -252,6 +289,8 @@ def _of_scene(scene: Scene, *, time: float | None = None) -> Stiffness:
         roller_mass=np.einsum("jia,i,jib->ab", follow, inertia, follow),
         pitch_diameter=scene.bearing.pitch_diameter,
         speed_rpm=value_at(scene.speed_rpm, at),
+        subject=scene,
+        time=at,
     )
 
 
