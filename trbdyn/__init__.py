@@ -70,6 +70,8 @@ if TYPE_CHECKING:
     from trbdyn.results.assembly import AssemblyResult as AssemblyResult, load as load
     from trbdyn.results.result import Result as Result
     from trbdyn.run.check import check as check
+    from trbdyn.run.contact_pressure import ContactPressure as ContactPressure, contact_pressure as contact_pressure
+    from trbdyn.run.edge_life import edge_life as edge_life
     from trbdyn.run.options import RunOptions as RunOptions
     from trbdyn.run.rating import rating as rating
     from trbdyn.run.resume import resume as resume

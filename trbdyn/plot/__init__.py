@@ -47,6 +47,7 @@ from trbdyn.plot.cage import (
     whirl_map as whirl_map,
 )
 from trbdyn.plot.contact_line import contact_line as contact_line
+from trbdyn.plot.contact_pressure import contact_pressure as contact_pressure
 from trbdyn.plot.drawing import (
     bearing_drawing as bearing_drawing,
     cage_drawing as cage_drawing,

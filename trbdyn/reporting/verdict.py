@@ -19,6 +19,7 @@ from trbdyn.results.result import Result
 from trbdyn.results.rows.losses import NOT_LOST
 from trbdyn.run import estimate
 from trbdyn.run.bias import biases, preset_of
+from trbdyn.run.contact_pressure import edge_warnings
 from trbdyn.run.torque_laws import straight_rollers, torque_laws
 from trbdyn.standards.sheet import life_text
 
@@ -517,6 +518,7 @@ def warnings(result: Result, numbers: dict[str, Any], estimated: int, assumed: i
             f"Nobody gave the profile of the rollers; it is that of ISO/TS 16281. With straight rollers {both}the largest "
             f"pressure would be {pressure:.2g} times as large."
         )
+    out += edge_warnings(result)
     interval = float(np.median(np.diff(result["time"]))) if len(result) > 2 else math.nan
     if numbers.get("pocket_force_peak") and "peaks" not in result.groups:
         out.append(

@@ -6,8 +6,9 @@ designs are run again, longer, and the change that this makes is learned, too.
 from __future__ import annotations
 
 import inspect
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final, Literal, Unpack
 
 import numpy as np
@@ -21,6 +22,7 @@ from trbdyn.model.assembly import Assembly, Subject
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.pocket_shapes import SHAPES
 from trbdyn.model.scene import Scene
+from trbdyn.model.spectrum import Spectrum
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.result import Result
 from trbdyn.run.options import RunOptions
@@ -178,6 +180,7 @@ def optimise(
     confirm: float = 10.0,
     seed: int = 0,
     options: RunOptions | None = None,
+    over: Spectrum | None = None,
     **how: Unpack[Running],
 ) -> Optimum:
     """The designs with the best results, of several aims the front.
@@ -216,6 +219,10 @@ def optimise(
     options : RunOptions, optional
         How each draw is run; 5 turns of the shaft with 'fast' by default. `Plan.options` of `trbdyn.plan` has the accuracy
         that an aim needs.
+    over : Spectrum, optional
+        Load cases of one bearing, with its tilts: designs are judged by their equilibria and the pressures of half spaces, and
+        nothing is run. `want` and `limits` then name ``edge_pressure``, the largest one in the outer tenth of a contact line
+        over all cases, ``largest_pressure`` (Pa), or the same by slices, ``slice_edge_pressure`` and ``slice_pressure``.
     **how
         Folder, executor, workers and progress bar of the runs: `trbdyn.study.Running`. A second call with the same folder goes on
         where the first one ended.
@@ -242,7 +249,12 @@ def optimise(
     True
     """
     expect("scene", subject, Scene, Assembly)
-    search = Search(
+    kind: Callable[..., Search] = Search
+    if over is not None:
+        from trbdyn.study.edge_search import EdgeSearch
+
+        kind, confirm = partial(EdgeSearch, over), 1.0
+    search = kind(
         subject,
         checked_bands(change),
         _wanted(want),
@@ -424,12 +436,17 @@ class Search:
             found[band.path] = int(value) if cells else float(value)
         return found
 
-    def _case(self, number: int, draw: int, offset: Mapping[str, float], length: float) -> Case:
+    def _changes(self, number: int, offset: Mapping[str, float]) -> tuple[dict[str, float], dict[str, Any]]:
+        """What a design has, and what has to be put into the subject for it with a draw of its tolerances."""
         changed = dict(self.first) if number == 0 else self.inputs(self.unit[number])
         overrides: dict[str, Any] = {} if number == 0 else dict(changed)
         for band in self.tolerances:
             value = changed.get(band.path, self._given("tolerances", band)) + offset[band.path]
             overrides[band.path] = int(value) if is_whole(self.base, band) else value
+        return changed, overrides
+
+    def _case(self, number: int, draw: int, offset: Mapping[str, float], length: float) -> Case:
+        changed, overrides = self._changes(number, offset)
         parameters = {"design": number, "draw": draw, "length": length, **changed}
         given = {name: getattr(self.options, name) for name in ("revolutions", "duration")}
         options = self.options.replace({name: length * value for name, value in given.items() if value is not None})

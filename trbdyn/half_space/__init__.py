@@ -1,0 +1,1 @@
+"""Contact of elastic bodies as half spaces: plain arrays in and out."""
