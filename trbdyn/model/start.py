@@ -30,6 +30,8 @@ class State:
         the vector: where it began, and its support is without force.
     housing_load : ndarray, shape (5,), optional
         What the support of a housing carried where the run began: force along x, y, z (N), moment about x, y (N m).
+    inputs : object, optional
+        What was in force where inputs were given between steps; `Simulation.set_state` puts it in force again.
     """
 
     time: float
@@ -37,6 +39,7 @@ class State:
     shaft_angle: float | None = None
     displacement: NDArray[np.float64] | None = None
     housing_load: NDArray[np.float64] | None = None
+    inputs: Any = None
 
 
 class Start(Model):

@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Generic, NoReturn, Self, TypeVar, cast, overload
+from typing import Any, Generic, Literal, NoReturn, Self, TypeVar, cast, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,6 +25,7 @@ from trbdyn.model.start import State as State
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.result import Result
 from trbdyn.run.estimate import Estimate, estimate
+from trbdyn.run.inputs import Controlled, Inputs, give, put_back
 from trbdyn.run.keeping import groups_of, kept_by_default
 from trbdyn.run.options import Group, RunOptions
 from trbdyn.run.running import Callback, Run, output_times
@@ -121,6 +122,7 @@ class Simulation(Displayed, Generic[R]):
         self._totals: dict[str, float] = {}
         self._counted: dict[str, int] = {}
         self._accounts: dict[str, Account] = {}
+        self._inputs: Inputs | None = None
         self._begin(self._seated.time, self._seated.vector)
         self._reached = self._seated.time
 
@@ -175,6 +177,20 @@ class Simulation(Displayed, Generic[R]):
             raise InputError.of("time", time, f"must be >= {first:g}, the start: histories are known from there on (s)")
         return self._seated.open(time, vector, self.options.settings())
 
+    def _begin_with(self, bearings: tuple[SeatedBearing, ...], inputs: Inputs) -> None:
+        """Go on from the present state with other inputs."""
+        state = self.state
+        before = self._seated
+        self._seated = replace(before, bearings=bearings)
+        try:
+            core = self._open(state.time, state.vector)
+        except BaseException:
+            self._seated = before
+            raise
+        self._count()
+        self._core, self._begun, self._end = core, state.time, None
+        self.bearings, self._inputs = bearings, inputs
+
     def _begin(self, time: float, vector: Array) -> None:
         """Make a new integrator, without any history: as in a new process."""
         self._core = self._open(time, vector)
@@ -224,10 +240,13 @@ class Simulation(Displayed, Generic[R]):
             time, vector = self._end.time, self._end.vector.copy()
         else:
             time, vector = self._core.time, self._core.state()
-        angle = self.scene.start_shaft_angle + self.scene.shaft_turn(time)
-        first = self.bearings[0]
+        inputs, first = self._inputs, self.bearings[0]
+        if inputs is None:
+            angle = self.scene.start_shaft_angle + self.scene.shaft_turn(time)
+        else:
+            angle = inputs.angle(time)
         held = None if first.scene.housing is None else first.motion.housing_load
-        return State(time, vector, angle, first.motion.displacement(time), held)
+        return State(time, vector, angle, first.motion.displacement(time), held, inputs)
 
     def view(self, vector: Array | None = None) -> Any:
         """Parts of a state vector by name (`StateView`); of a copy of the present one by default. Those of the first bearing's
@@ -262,6 +281,9 @@ class Simulation(Displayed, Generic[R]):
         else:
             given, when = _numbers(vector), self.time
         when = when if time is None else number_of("time", time)
+        if isinstance(vector, State) and vector.inputs is not None:
+            self.bearings, self._inputs = put_back(self, vector.inputs), vector.inputs
+            self._seated = replace(self._seated, bearings=self.bearings)
         core = self._open(when, given)
         self._count()
         self._core, self._begun, self._reached, self._end = core, when, when, None
@@ -305,23 +327,75 @@ class Simulation(Displayed, Generic[R]):
         self.set_state(self.state)
         self._accounts = accounts
 
-    def step(self) -> float:
-        """One step of the integrator, from the end of its last one; gives the new time (s).
+    def step(self, *, to: float | None = None, between: Literal["held", "linear"] = "held", **inputs: Any) -> float:
+        """One step of the integrator, from the end of its last one, or steps to a time; gives the new time (s).
+
+        Inputs may be given with the time. They are in force until others are given. So another program can drive a bearing: a
+        controller, or a model of a machine.
+
+        Parameters
+        ----------
+        to : float, optional
+            Time to go to (s); one step of the integrator without it.
+        between : {'held', 'linear'}
+            Loads and torques that are given begin at once, or change evenly until `to`. Speeds and places of a ring always change
+            evenly until `to`, as nothing that moves can jump. The temperature of the oil is that of the whole step.
+        **inputs
+            Of a scene its fields `axial_load`, `radial_load`, `radial_direction_deg`, `moment_x`, `moment_y`, `torque`,
+            `displacement`, `misalignment_x`, `misalignment_y`, `speed_rpm`, `outer_speed_rpm`, and `temperature_c` of its oil; of
+            an assembly its fields `loads`, `torque` and `speed_rpm`, and `temperature_c`. A ring that follows its load goes
+            evenly to where it is in equilibrium at `to`.
 
         Raises
         ------
         StepError
             If the integrator cannot go on; the state stays the last good one.
         InputError
-            If it is called from the callback of a run.
+            If an input is not allowed, or the scene's own quantities still change; if it is called from the callback of a run.
+        LoadError
+            If a ring that follows its load cannot carry it.
+
+        Examples
+        --------
+        >>> import trbdyn as trb
+        >>> scene = trb.cases.scene_30310(1000.0, 5e3, ring="follows")
+        >>> simulation = trb.Simulation(scene)
+        >>> simulation.step(to=1e-4, axial_load=6e3, speed_rpm=1010.0)
+        0.0001
         """
         self._check_not_running("step")
+        if to is None:
+            if inputs:
+                raise InputError.of("to", None, "must be given together with inputs (s)")
+            self._settle_inputs(self.time)
+            self._one_step()
+            return self._reached
+        end = number_of("to", to)
+        if not self.time < end <= MAX_TIME:
+            raise InputError.of(
+                "to", to, f"must be after the present time, {self.time:.9g}, and at most {MAX_TIME:g} (s)"
+            )
+        if inputs:
+            give(self, end, between, inputs)
+        else:
+            self._settle_inputs(end)
+        while self._core.time < end:
+            self._one_step()
+        self._stand_at(end)
+        self._reached = end
+        return end
+
+    def _settle_inputs(self, end: float) -> None:
+        """Where inputs changed evenly until now, they keep their values from here on."""
+        if self._inputs is not None and self._inputs.changes and self.time >= self._inputs.until:
+            give(self, max(end, math.nextafter(self.time, math.inf)), "held", {})
+
+    def _one_step(self) -> None:
         try:
             self._reached = self._core.step()
             self._end = None
         except _core.CoreStepError as error:
             raise StepError(str(error), time=self._core.time) from None
-        return self._reached
 
     def estimate(
         self, *, revolutions: float | None = None, duration: float | None = None, save_every: float | None = None
@@ -393,6 +467,7 @@ class Simulation(Displayed, Generic[R]):
         output: str | Path | None = None,
         progress: bool = False,
         callback: Callback | None = None,
+        callback_every: float | None = None,
         checkpoint_every: float | None = None,
         overwrite: bool = False,
     ) -> R:
@@ -422,6 +497,9 @@ class Simulation(Displayed, Generic[R]):
             Called with this simulation about every tenth of a second; True ends the run. What it raises ends the run
             too, after the file is closed; the result so far is the attribute ``result`` of the exception. It may look
             at the simulation, but not step, restart or set it.
+        callback_every : float, optional
+            Bearing time between two calls of the callback (s). It then may give a dict of inputs, see `step`, which are in force
+            until its next call: feedback. Records are made at these times, without peaks; the same callback gives the same bits.
         checkpoint_every : float, optional
             Bearing time between checkpoints (s), see `RunOptions`; by default that of this simulation's options.
             Together with `output`, checkpoints are written beside it, and `resume` goes on from the last one.
@@ -447,6 +525,18 @@ class Simulation(Displayed, Generic[R]):
         path = None if output is None else output_path(output, overwrite=overwrite)
         if path is not None:
             _check_output(path)
+        if callback_every is not None:
+            callback_every = number_of("callback_every", callback_every)
+            if not callback_every > 0.0:
+                raise InputError.of("callback_every", callback_every, "must be > 0 (s)")
+            alone = {"save_every": save_every, "until": until, "checkpoint_every": checkpoint_every}
+            for name, value in alone.items():
+                if value is not None:
+                    raise InputError.of(name, value, "must not be given together with callback_every")
+            save_every = callback_every
+        elif self._inputs is not None:
+            limit = "must be given: inputs were given between steps, which a run of the scene alone does not have"
+            raise InputError.of("callback_every", None, limit)
         changes: dict[str, Any] = {"revolutions": revolutions, "duration": duration}
         changes |= {} if until is None else {"until": dict(until)}
         changes |= {} if checkpoint_every is None else {"checkpoint_every": checkpoint_every}
@@ -459,6 +549,8 @@ class Simulation(Displayed, Generic[R]):
             save_groups,
             optional=groups_of(one.scene for one in self.bearings),
         )
+        if callback_every is not None:
+            kept["save_groups"] = tuple(name for name in kept["save_groups"] if name != "peaks")
         options = options.replace(**kept)
         if options.checkpoint_every is not None and not isinstance(self.subject, Model):
             limit = (
@@ -466,7 +558,8 @@ class Simulation(Displayed, Generic[R]):
             )
             raise InputError.of(("run", "checkpoint_every"), options.checkpoint_every, limit)
         times = output_times(self._reached, end, kept["save_every"])
-        run = Run(self, options, times, callback)
+        kind = Run if callback_every is None else Controlled
+        run = kind(self, options, times, callback)
         if path is not None:
             run.write_to(path, overwrite=overwrite)
         return cast(R, run.go(progress=progress))

@@ -97,10 +97,10 @@ def seating_of(assembly: Assembly) -> Seating:
         damping_turns=shaft.damping_turns,
     )
     place = np.concatenate([turn3 * found.displacement(shaft.mass_position), turn2 * found.tilt])
-    return Seating(seats, body, place, _loads(assembly, found), assembly.shared_housing is not None)
+    return Seating(seats, body, place, loads_of(assembly, found), assembly.shared_housing is not None)
 
 
-def _loads(assembly: Assembly, found: ShaftEquilibrium) -> dict[str, Load]:
+def loads_of(assembly: Assembly, found: ShaftEquilibrium) -> dict[str, Load]:
     """Forces and moments at the first bearing's roller-centre plane, in its axes. Lever arms lie along the axis of the start."""
     first = assembly.bearings[0]
     turn3, turn2 = turns_of(first)

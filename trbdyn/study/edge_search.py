@@ -1,12 +1,9 @@
-"""A search for profiles whose edges press little: designs are judged by half spaces at the equilibria of load cases."""
+"""What designs of profiles are judged by where nothing is run: pressures of half spaces at the equilibria of load cases."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any, Final
-
-import numpy as np
-from numpy.typing import NDArray
 
 from trbdyn.base.expected import expect
 from trbdyn.errors import InputError, LoadError
@@ -16,9 +13,6 @@ from trbdyn.model.spectrum import Spectrum
 from trbdyn.run.contact_pressure import RACES, contacts_of, one_contact
 from trbdyn.study.definition import Base
 from trbdyn.study.drawn_bearing import belongs_together
-from trbdyn.study.optimise import Search
-
-Array = NDArray[np.float64]
 
 NUMBERS: Final = ("edge_pressure", "largest_pressure", "slice_edge_pressure", "slice_pressure")
 """What a design is judged by (Pa), each the largest over all load cases."""
@@ -46,58 +40,26 @@ def edge_numbers(scene: Scene) -> dict[str, float]:
     }
 
 
-class EdgeSearch(Search):
-    """Designs that were judged so far."""
+class EdgeCases:
+    """The load cases of a spectrum of one bearing, ready for changes of a design."""
 
-    def __init__(self, over: Spectrum, *rest: Any) -> None:
+    def __init__(self, over: Spectrum) -> None:
         expect("over", over, Spectrum)
         for index, one in enumerate(over.cases):
             expect(f"over.cases.{index}.subject", one.subject, Scene)
-        self.over = over
-        super().__init__(*rest)
-        expect("subject", self.subject, Scene)
-        self.cases = [Base.of(one.subject) for one in over.cases]
-        self.names = [one.name for one in over.cases]
+        self._bases = {one.name: Base.of(one.subject) for one in over.cases}
 
-    def _judged(self, numbers: Sequence[int], length: float) -> tuple[list[dict[str, float]], Array]:
-        import xarray
+    def check(self, field: str, names: Iterable[str]) -> None:
+        """Refuse names that no design is judged by."""
+        for name in names:
+            if name not in NUMBERS:
+                raise InputError.of(field, name, f"must be one of {', '.join(NUMBERS)} where `over` is given")
 
-        for field, names in (("want", list(self.want)), ("limits", [name for name, *_ in self.limits])):
-            for name in names:
-                if name not in NUMBERS:
-                    raise InputError.of(field, name, f"must be one of {', '.join(NUMBERS)} for `over`")
-        tables, columns = [], []
-        for number in numbers:
-            rows: dict[str, list[Any]] = {
-                name: [] for name in (*NUMBERS, "status", "message", "design", "draw", "length")
-            }
-            for draw, offset in enumerate(self.offsets):
-                said = ""
-                try:
-                    values = self._of_cases(self._changes(number, offset)[1])
-                except (InputError, LoadError) as error:
-                    values, said = dict.fromkeys(NUMBERS, np.nan), str(error).splitlines()[0]
-                state = {
-                    "status": "failed" if said else "done",
-                    "message": said,
-                    "design": number,
-                    "draw": draw,
-                    "length": length,
-                }
-                for name, value in (values | state).items():
-                    rows[name].append(value)
-            data = xarray.Dataset({name: ("case", np.array(values)) for name, values in rows.items()})
-            data = data.set_coords(["design", "draw", "length"])
-            self.parts.append(data)
-            table, column = self._judge(data)
-            tables.append(table)
-            columns.append(column)
-        return tables, np.array(columns)
-
-    def _of_cases(self, overrides: dict[str, Any]) -> dict[str, float]:
+    def numbers(self, overrides: Mapping[str, Any]) -> dict[str, float]:
+        """The largest of each number over all cases with a design's changes."""
         found = []
-        for name, base in zip(self.names, self.cases, strict=True):
-            made = overrides | belongs_together(Bearing.model_validate(base.tables["bearing"]), overrides, {}, "")
+        for name, base in self._bases.items():
+            made = {**overrides, **belongs_together(Bearing.model_validate(base.tables["bearing"]), overrides, {}, "")}
             scene = base.build(made)[0]
             assert isinstance(scene, Scene)
             try:

@@ -6,9 +6,8 @@ designs are run again, longer, and the change that this makes is learned, too.
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING, Any, Final, Literal, Unpack
 
 import numpy as np
@@ -17,7 +16,7 @@ from numpy.typing import NDArray
 from trbdyn.base.expected import expect
 from trbdyn.base.shown import Shown
 from trbdyn.base.validation import number_of, whole_number_of
-from trbdyn.errors import InputError, unknown_name
+from trbdyn.errors import InputError, LoadError, unknown_name
 from trbdyn.model.assembly import Assembly, Subject
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.pocket_shapes import SHAPES
@@ -30,6 +29,7 @@ from trbdyn.run.simulation import Simulation
 from trbdyn.study.answer import Answer
 from trbdyn.study.definition import Base, Case, Study, split_path
 from trbdyn.study.drawn_bearing import belongs_together
+from trbdyn.study.edge_search import NUMBERS, EdgeCases
 from trbdyn.study.guide import Aims, Fits, next_designs
 from trbdyn.study.runner import Running
 from trbdyn.study.runner import run as run_study
@@ -249,12 +249,7 @@ def optimise(
     True
     """
     expect("scene", subject, Scene, Assembly)
-    kind: Callable[..., Search] = Search
-    if over is not None:
-        from trbdyn.study.edge_search import EdgeSearch
-
-        kind, confirm = partial(EdgeSearch, over), 1.0
-    search = kind(
+    search = Search(
         subject,
         checked_bands(change),
         _wanted(want),
@@ -263,10 +258,11 @@ def optimise(
         whole_number_of("draws", draws, 1) if tolerances else 1,
         judged,
         whole_number_of("designs", designs, FEWEST),
-        _longer(confirm),
+        _longer(confirm) if over is None else 1.0,
         whole_number_of("seed", seed, 0),
         RunOptions(revolutions=5.0, accuracy="fast") if options is None else options,
         Running(executor="threads") | how,
+        None if over is None else EdgeCases(over),
     )
     search.begin(max(search.designs // 3, FEWEST - 4))
     while (left := search.designs - len(search.unit)) > 0:
@@ -293,10 +289,15 @@ class Search:
     seed: int
     options: RunOptions
     how: Running
+    cases: EdgeCases | None = None
 
     def __post_init__(self) -> None:
         if self.judged not in JUDGED:
             raise InputError.of("judged", self.judged, unknown_name(self.judged, JUDGED))
+        if self.cases is not None:
+            expect("subject", self.subject, Scene)
+            self.cases.check("want", self.want)
+            self.cases.check("limits", [name for name, *_ in self.limits])
         self.base = Base.of(self.subject, self.options)
         whole = [is_whole(self.base, band) for band in self.bands]
         cells = [int(b.high - b.low) + 1 if one else 0 for b, one in zip(self.bands, whole, strict=True)]
@@ -382,12 +383,33 @@ class Search:
     def _judged(self, numbers: Sequence[int], length: float) -> tuple[list[dict[str, float]], Array]:
         """Runs designs over all draws, so many times as long as the options say, and judges each."""
         draws = len(self.offsets)
+        if self.cases is not None:
+            parts = [self._at_equilibria(number, length) for number in numbers]
+            self.parts += parts
+            both = [self._judge(part) for part in parts]
+            return [table for table, _ in both], np.array([columns for _, columns in both])
         made = [self._case(n, draw, offset, length) for n in numbers for draw, offset in enumerate(self.offsets)]
         data = run_study(Study(tuple(made), (), "optimise"), **self.how)
         self._check_names(data)
         self.parts.append(data)
         found = [self._judge(data.isel(case=slice(k * draws, (k + 1) * draws))) for k in range(len(numbers))]
         return [table for table, _ in found], np.array([columns for _, columns in found])
+
+    def _at_equilibria(self, number: int, length: float) -> xarray.Dataset:
+        """Numbers of a design at the equilibria of the load cases, for each draw."""
+        import xarray
+
+        assert self.cases is not None
+        rows: list[dict[str, Any]] = []
+        for draw, offset in enumerate(self.offsets):
+            row: dict[str, Any] = dict.fromkeys(NUMBERS, np.nan) | {"status": "done", "message": ""}
+            try:
+                row |= self.cases.numbers(self._changes(number, offset)[1])
+            except (InputError, LoadError) as error:
+                row |= {"status": "failed", "message": str(error).splitlines()[0]}
+            rows.append(row | {"design": number, "draw": draw, "length": length})
+        data = xarray.Dataset({name: ("case", np.array([row[name] for row in rows])) for name in rows[0]})
+        return data.set_coords(["design", "draw", "length"])
 
     @property
     def ran(self) -> Flags:
