@@ -127,6 +127,27 @@ def test_a_ring_that_is_placed_takes_places() -> None:
         moving.step(to=1e-4, speed_rpm=900.0)
 
 
+def test_a_ring_may_follow_a_cubic() -> None:
+    """x = a t^3 is met by its places and rates, so that steps of two lengths give the same forces of damping."""
+    scene = trb.cases.scene_30310(1000.0, 5e3)
+    place = trb.Simulation(scene).equilibrium.displacement
+    scene = scene.replace(axial_load=0.0, displacement=tuple(float(one) for one in place[:3]))
+    found = []
+    for count in (2, 8):
+        simulation = trb.Simulation(scene, accuracy="reference")
+        for time in np.linspace(0.0, 4e-5, count + 1)[1:]:
+            x, y, z = float(place[0]), float(place[1]), float(place[2]) - 1.5e7 * float(time) ** 3
+            rates = {"displacement": (0.0, 0.0, -4.5e7 * float(time) ** 2)}
+            simulation.step(to=float(time), displacement=(x, y, z), rates=rates)
+        record = simulation.record()
+        assert float(record["ring_velocity"][2]) == pytest.approx(-4.5e7 * 1.6e-9, rel=1e-9)
+        found.append(float(record["ring_force"][2]))
+    assert found[0] > 5.2e3
+    assert found[1] == pytest.approx(found[0], rel=5e-3)
+    with pytest.raises(trb.InputError, match="rates"):
+        simulation.step(to=1e-3, rates={"speed_rpm": 1.0})
+
+
 def pair() -> trb.Assembly:
     shaft = trb.Shaft.hollow_cylinder(mass=6.0, outer_diameter=0.05, length=0.3)
     return trb.Assembly.pair(

@@ -52,6 +52,12 @@ OF_A_SCENE: Final = (
     TEMPERATURE,
 )
 OF_AN_ASSEMBLY: Final = ("loads", "torque", "speed_rpm", TEMPERATURE)
+RATES: Final = {
+    "displacement": ("displacement_x", "displacement_y", "displacement_z"),
+    "misalignment_x": ("rotation_x",),
+    "misalignment_y": ("rotation_y",),
+}
+"""Inputs whose rates may be given, and their channels."""
 BETWEEN: Final = ("held", "linear")
 
 
@@ -72,6 +78,8 @@ class Inputs:
         kink; a simulation that steps on from there takes the values as they are then.
     start : ShaftEquilibrium, optional
         The equilibrium in which an assembly began.
+    rates : ndarray, optional
+        Rates of the channels at `until`, where they were given.
     """
 
     subject: Subject
@@ -79,6 +87,7 @@ class Inputs:
     values: tuple[Array, ...]
     until: float
     start: ShaftEquilibrium | None = None
+    rates: Array | None = None
 
     @property
     def changes(self) -> bool:
@@ -114,8 +123,12 @@ def turned(motion: RingMotion, name: str, angle: float, time: float) -> float:
     return angle
 
 
-def give(sim: Simulation[Any], to: float, between: str, given: Mapping[str, Any]) -> None:
-    """Put inputs in force from the present time of a simulation on. What changes evenly reaches its value at `to` (s)."""
+def give(
+    sim: Simulation[Any], to: float, between: str, given: Mapping[str, Any], rates: Mapping[str, Any] | None = None
+) -> None:
+    """Put inputs in force from the present time of a simulation on. What changes evenly reaches its value at `to` (s); places of
+    a ring whose rates then are given follow a cubic, which begins with the rates that were given before.
+    """
     if between not in BETWEEN:
         raise InputError.of("between", between, unknown_name(str(between), BETWEEN))
     before = _present(sim)
@@ -128,15 +141,20 @@ def give(sim: Simulation[Any], to: float, between: str, given: Mapping[str, Any]
     if TEMPERATURE in given:
         models = [one.model for one in seated(subject, sim.instruction_set).bearings]
     aims = _aims(sim, subject, start, given)
+    end = np.zeros_like(before.values[0]) if rates is None else _rates(subject, rates)
     bearings, motions, values = [], [], []
     for one, motion, model, aim, reached in zip(sim.bearings, before.motions, models, aims, before.values, strict=True):
         present = reached if now >= before.until else _values(motion, now)
         wanted = np.where(np.isnan(aim), present, aim)
         moved = _moved(motion, now, to, present, wanted, jumps=between == "held")
+        if rates is not None:
+            moved = _bent(moved, to, wanted, before.rates, end)
         bearings.append(replace(one, model=model, motion=moved, scene=_scene(subject, one)))
         motions.append(moved)
         values.append(wanted)
-    sim._begin_with(tuple(bearings), Inputs(subject, tuple(motions), tuple(values), to, start))
+    sim._begin_with(
+        tuple(bearings), Inputs(subject, tuple(motions), tuple(values), to, start, None if rates is None else end)
+    )
 
 
 def _scene(subject: Subject, one: SeatedBearing) -> Scene:
@@ -289,6 +307,43 @@ def _moved(motion: RingMotion, now: float, to: float, present: Array, wanted: Ar
     for row, (time, values) in zip(table, rows, strict=True):
         row[0], row[1:-1:2], row[2:-1:2] = time, values, slope
     return replace(motion, table=table, period=0.0, angle_time=now, shaft_angle=shaft, outer_angle=outer)
+
+
+def _rates(subject: Subject, rates: Mapping[str, Any]) -> Array:
+    """Rates of the channels at the end of a step, of places of a ring."""
+    if not isinstance(subject, Scene):
+        raise InputError.of("rates", list(rates), "must not be given for an assembly: its shaft moves by itself")
+    found = np.zeros(len(_core.motion_table()))
+    for name, value in rates.items():
+        if name not in RATES:
+            raise InputError.of(("rates", name), value, unknown_name(name, RATES))
+        axes = np.atleast_1d(np.asarray([0.0 if one is None else one for one in np.atleast_1d(value)], dtype=float))
+        if axes.size != len(RATES[name]) or not np.isfinite(axes).all():
+            raise InputError.of(
+                ("rates", name), value, f"must have {len(RATES[name])} finite numbers (1/s of the input)"
+            )
+        for channel, one in zip(RATES[name], axes, strict=True):
+            found[(_channel(channel) - 1) // 2] = one
+    return found
+
+
+def _bent(motion: RingMotion, to: float, wanted: Array, begin: Array | None, end: Array) -> RingMotion:
+    """A motion whose places of a ring follow a cubic to their rates at the end of a step, and go on with these."""
+    places = [(_channel(name) - 1) // 2 for names in RATES.values() for name in names]
+    first = motion.table[0].copy()
+    now, slope = first[0], first[2:-1:2].copy()
+    values, last, length = first[1:-1:2], slope.copy(), to - now
+    slope[places] = (slope if begin is None else begin)[places]
+    last[places] = end[places]
+    table = np.zeros((3, motion.table.shape[1]))
+    for row, time, value, rate in zip(
+        table, (now, to, to + length), (values, wanted, wanted + length * last), (slope, last, last), strict=True
+    ):
+        row[0], row[1:-1:2], row[2:-1:2] = time, value, rate
+    table[1, -1] = 1.0  # the curve goes on smoothly
+    jumps = [(_channel(name) - 1) // 2 for name in load_channels()]
+    table[1, 1 + 2 * np.array(jumps)] = values[jumps] + length * last[jumps]
+    return replace(motion, table=table)
 
 
 class Controlled(Run):

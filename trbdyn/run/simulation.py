@@ -327,7 +327,14 @@ class Simulation(Displayed, Generic[R]):
         self.set_state(self.state)
         self._accounts = accounts
 
-    def step(self, *, to: float | None = None, between: Literal["held", "linear"] = "held", **inputs: Any) -> float:
+    def step(
+        self,
+        *,
+        to: float | None = None,
+        between: Literal["held", "linear"] = "held",
+        rates: Mapping[str, Any] | None = None,
+        **inputs: Any,
+    ) -> float:
         """One step of the integrator, from the end of its last one, or steps to a time; gives the new time (s).
 
         Inputs may be given with the time. They are in force until others are given. So another program can drive a bearing: a
@@ -340,6 +347,9 @@ class Simulation(Displayed, Generic[R]):
         between : {'held', 'linear'}
             Loads and torques that are given begin at once, or change evenly until `to`. Speeds and places of a ring always change
             evenly until `to`, as nothing that moves can jump. The temperature of the oil is that of the whole step.
+        rates : mapping of str to float or tuple, optional
+            Rates of `displacement` (m/s), `misalignment_x` and `misalignment_y` (rad/s) at `to`: the ring then follows a cubic,
+            with a velocity that does not jump from step to step, as its damping forces need. Those that are not named are 0.
         **inputs
             Of a scene its fields `axial_load`, `radial_load`, `radial_direction_deg`, `moment_x`, `moment_y`, `torque`,
             `displacement`, `misalignment_x`, `misalignment_y`, `speed_rpm`, `outer_speed_rpm`, and `temperature_c` of its oil; of
@@ -365,7 +375,7 @@ class Simulation(Displayed, Generic[R]):
         """
         self._check_not_running("step")
         if to is None:
-            if inputs:
+            if inputs or rates is not None:
                 raise InputError.of("to", None, "must be given together with inputs (s)")
             self._settle_inputs(self.time)
             self._one_step()
@@ -375,8 +385,8 @@ class Simulation(Displayed, Generic[R]):
             raise InputError.of(
                 "to", to, f"must be after the present time, {self.time:.9g}, and at most {MAX_TIME:g} (s)"
             )
-        if inputs:
-            give(self, end, between, inputs)
+        if inputs or rates is not None:
+            give(self, end, between, inputs, rates)
         else:
             self._settle_inputs(end)
         while self._core.time < end:
