@@ -22,6 +22,7 @@ import grimp
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = "trbdyn"
 HEAVY = (
+    "pythonfmu3",
     "dask",
     "distributed",
     "ezdxf",

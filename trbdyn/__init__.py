@@ -28,6 +28,7 @@ if TYPE_CHECKING:
         StepError as StepError,
         TrbError as TrbError,
     )
+    from trbdyn.fmi.export import write_fmu as write_fmu
     from trbdyn.model import cases as cases, lubricants as lubricants, pocket_shapes as pocket_shapes
     from trbdyn.model.assembly import Assembly as Assembly
     from trbdyn.model.bearing import (

@@ -14,7 +14,23 @@ from collections.abc import Sequence
 from typing import Final
 
 from trbdyn.base.version import __version__
-from trbdyn.cli import app, cases, check, demo, ensemble, look, plan, rating, report, run, sweep, thermal, torque, view
+from trbdyn.cli import (
+    app,
+    cases,
+    check,
+    demo,
+    ensemble,
+    fmu,
+    look,
+    plan,
+    rating,
+    report,
+    run,
+    sweep,
+    thermal,
+    torque,
+    view,
+)
 from trbdyn.cli.outcome import BAD_INPUT, DONE, FAILED, FAULT, INTERRUPTED, Parser, let_any_name_be_printed, run_command
 
 __all__ = ["BAD_INPUT", "DONE", "FAILED", "FAULT", "INTERRUPTED", "main", "make_parser"]
@@ -34,6 +50,7 @@ COMMANDS: Final = (
     rating.rating,
     torque.torque,
     thermal.thermal,
+    fmu.fmu,
     app.app,
     cases.cases,
     cases.new,

@@ -14,7 +14,8 @@ from trbdyn.model.scene import Scene
 from trbdyn.results.result import Result
 from trbdyn.run.contact_pressure import RACES, contacts_of, one_contact
 from trbdyn.standards.lamina import LAMINAS, LaminaLoads
-from trbdyn.standards.sheet import contact_ratings, lamina_loads, turning_against_load
+from trbdyn.standards.loading import lamina_loads, turning_against_load
+from trbdyn.standards.sheet import contact_ratings
 
 Array = NDArray[np.float64]
 
