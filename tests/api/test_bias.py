@@ -59,6 +59,17 @@ def test_summary_and_report_state_one_bias():
     assert f"largest pocket forces {100.0 * abs(bias.share):.2g}" in result.summary()["accuracy_note"]
 
 
+def test_a_bias_of_the_losses_is_one_of_the_torque_and_of_the_power(monkeypatch):
+    result = trb.Simulation(scene_30310(3000.0, 1230.0), accuracy="fast").run(duration=1e-3)
+    values = {"bias_loss": -0.05, "bias_loss_half_width": 0.01}
+    monkeypatch.setattr("trbdyn.run.bias.measured", lambda *given: ("light", values))
+    found = biases(result)
+    assert {name: (bias.share, bias.half_width) for name, bias in found.items()} == {
+        "torque": (-0.05, 0.01),
+        "power_loss": (-0.05, 0.01),
+    }
+
+
 def test_a_summary_says_how_low_peaks_are():
     result = trb.Simulation(scene_30310(3000.0, 1230.0), accuracy="fast").run(duration=1e-3)
     said = result.summary()["accuracy_note"]

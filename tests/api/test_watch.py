@@ -15,6 +15,8 @@ from trbdyn.model.cases import paper_30310
 from trbdyn.run.energies import LEAST_STORED_SHARE
 from trbdyn.run.options import ACCURACY
 from trbdyn.run.probe import _difference
+from trbdyn.run.vibrations import Seen as Vibrating
+from trbdyn.run.vibrations import Vibrations
 from trbdyn.run.watch import LOST_SHARE, STOP, WARN, WINDOWS, Watch
 
 LOOSE: dict[str, Any] = {
@@ -299,3 +301,17 @@ def test_rollers_that_carry_are_not_called_vibrating(loads):
     """Not in the unloaded zone of a combined load, either: the others carry."""
     result = trb.Simulation(paper_30310(2000.0, *loads), accuracy="reference").run(duration=0.03)
     assert result.warnings == ()
+
+
+@pytest.mark.parametrize(
+    ("damped", "size", "seen"),
+    [(True, 1e-3, False), (True, 0.02, True), (False, 1e-4, False), (False, 1e-3, True)],
+)
+def test_vibrations_without_damping_matter_from_smaller_sizes_on(damped, size, seen, monkeypatch):
+    """What is missing counts from a hundredth of the elastic energy on, where nothing damps from two ten-thousandths on."""
+    monkeypatch.setattr("trbdyn.run.vibrations._taken", lambda span, now, time: (0.5, size))
+    monkeypatch.setattr(Vibrations, "_damped", lambda self, now: damped)
+    looked: Any = Vibrations.__new__(Vibrations)
+    looked._seen = Vibrating()
+    looked._suspect(SimpleNamespace(since=0.0), {}, 1.0)
+    assert (looked._seen.suspect is not None) is seen

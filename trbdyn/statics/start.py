@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,7 +82,14 @@ def _join_orbits(state: StateView, scene: Scene) -> None:
 
 
 def contacts_at_start(scene: Scene) -> dict[str, Array]:
-    """Every intermediate quantity of every contact at the start; names, shapes and units as in `Simulation.contacts`."""
+    """Every intermediate quantity of every contact at the start; names, shapes and units as in `Simulation.contacts`. The arrays
+    are read-only: the latest scenes are kept, as rating and creep of a run ask for one equilibrium.
+    """
+    return dict(_contacts_at_start(scene))
+
+
+@lru_cache(maxsize=8)
+def _contacts_at_start(scene: Scene) -> Mapping[str, Array]:
     if scene.elastic_cage is not None and scene.elastic_cage.file is not None:
         # contacts of rollers do not need the modes, whose file is not opened for the summary of a result
         start = Start(time=scene.start.time) if scene.start.kind == "state" else scene.start
@@ -89,4 +98,7 @@ def contacts_at_start(scene: Scene) -> dict[str, Array]:
     motion, equilibrium = ring_motion(model, scene)
     vector = start_state(model, scene, motion, equilibrium)
     onlooker = motion.open(model, scene.start.time, vector)
-    return onlooker.contacts(scene.start.time, vector)
+    found = onlooker.contacts(scene.start.time, vector)
+    for values in found.values():
+        np.asarray(values).setflags(write=False)
+    return found
