@@ -92,7 +92,7 @@ def test_groups_that_are_none_are_refused(groups: Any) -> None:
 
 
 def guided(effects: trb.Effects) -> trb.Effects:
-    return effects.replace(guidance="outer_land", oil_fill=0.1, pocket_film=0.5)
+    return effects.replace(guidance="outer_land", oil_fill=0.1, pocket_film=5e-6)
 
 
 @pytest.mark.parametrize("change", [lambda effects: effects, guided], ids=["default", "guided, with oil"])

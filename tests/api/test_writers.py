@@ -355,7 +355,7 @@ COMMANDS: dict[str, tuple[list[str], list[str]]] = {
 }
 """Words of each command, and the files that it would write."""
 WRITE_A_STUDY = {"sweep", "ensemble"}
-ONLY_PRINT = {"info", "cases", "rating"}
+ONLY_PRINT = {"info", "cases", "rating", "check"}
 OWNS_A_FOLDER = {"app"}
 
 

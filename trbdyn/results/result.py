@@ -198,7 +198,7 @@ class Result(Derived, Displayed):
     @property
     def subject(self) -> Scene | None:
         """What was simulated: the scene; None of a bearing on a shaft, which runs with the others alone."""
-        return None if "assembly" in self.meta else self.scene
+        return None if self.on_shaft else self.scene
 
     @property
     def ring_loads(self) -> tuple[Array, Array]:

@@ -49,7 +49,7 @@ class Replay:
     """
 
     def __init__(self, result: Result) -> None:
-        self._on_shaft = "assembly" in result.meta
+        self._on_shaft = result.on_shaft
         moving = (*(("ring",) if result.ring_moves else ()), *(("housing",) if result.housing_moves else ()))
         for group in (*NEEDED, *moving):
             if group not in result.groups:
