@@ -84,6 +84,7 @@ if TYPE_CHECKING:
     from trbdyn.statics.assembly import equilibrium as equilibrium, stiffness as stiffness
     from trbdyn.statics.fit import fit as fit
     from trbdyn.statics.preload import preload_diagram as preload_diagram
+    from trbdyn.study.cage_answer import cage_answer as cage_answer
     from trbdyn.study.cage_map import cage_map as cage_map
     from trbdyn.study.least_load import least_load as least_load
     from trbdyn.study.optimise import optimise as optimise

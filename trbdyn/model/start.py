@@ -43,7 +43,8 @@ class State:
 
 
 class Start(Model):
-    """How a run starts; made by `equal`, `unequal`, `whirl` or `state`. Rollers and cage always start in pure rolling.
+    """How a run starts; made by `equal`, `unequal`, `whirl` or `state`. Rollers and cage start in pure rolling unless `slip` says
+    otherwise.
 
     Parameters
     ----------
@@ -58,6 +59,9 @@ class Start(Model):
         Whirl: distance of the cage's centre from the bearing axis, in units of the radial play Cpr (1).
     direction_deg : float
         Whirl: where the cage's centre starts, from +x towards +y (deg).
+    slip : float
+        Equal, unequal and whirl: share by which rollers and cage turn slower than in pure rolling, both around the bearing and
+        each roller about its axis: 0 in pure rolling, 1 where they stand (1).
     time : float
         When the run starts (s). Start state, loads and the ring's place belong to this time, and the shaft's angle is
         zero then unless the start is from a state.
@@ -78,6 +82,7 @@ class Start(Model):
     spread: Annotated[Number, unit("1", ge=0, le=1)] = 0.8
     eccentricity: Annotated[Number, unit("1", ge=0, le=1)] = 0.9
     direction_deg: Annotated[Number, unit("deg")] = -90.0
+    slip: Annotated[Number, unit("1", ge=0, le=1)] = 0.0
     time: Annotated[Number, unit("s", ge=-MAX_TIME, le=MAX_TIME)] = 0.0
     state_vector: tuple[Number, ...] = ()
     shaft_angle: Annotated[Number, unit("rad", ge=-1e9, le=1e9)] | None = None
@@ -92,6 +97,8 @@ class Start(Model):
                 else "belongs to a start from a state only"
             )
             raise InputError.of("state_vector", self.state_vector, allowed)
+        if self.kind == "state" and self.slip != 0.0:
+            raise InputError.of("slip", self.slip, "must be 0 with a start from a state, which has its own speeds (1)")
         for name, of in (("shaft_angle", "rad"), ("displacement", "m"), ("housing_load", "N")):
             given = getattr(self, name)
             if self.kind != "state" and given is not None:

@@ -81,15 +81,36 @@ class Derived(ABC):
         MotionSettling
             Its ``str`` is the answer in words; ``time`` is where averages may begin.
         """
-        angle = self["roller_orbit_angle"].mean(axis=1)
+        creep = self.creep_time if self._knows_cage else np.nan
+        return observables.motion_settling(self["time"], **self._judged(), creep_time=creep)
+
+    def turn_means(self) -> tuple[Array, dict[str, Array]]:
+        """Means over whole turns of the rollers, with the times of the turns (s): what `settling` goes by.
+
+        Returns
+        -------
+        time : ndarray, shape (N,)
+            Mean time of each turn, s.
+        means : dict of str to ndarray
+            Roller spacing in units of the angle Cpc/(Dpw/2); with a cage orbit radius and whirl amplitude over Cpr.
+        """
+        return observables.turn_means(self["time"], **self._judged())
+
+    @property
+    def _knows_cage(self) -> bool:
+        return self.has_cage and self.clearances.radial > 0.0
+
+    def _judged(self) -> dict[str, Array]:
+        """What `observables.motion_settling` judges, by the names of its arguments."""
         unit = np.degrees(self.clearances.circumferential / (0.5 * self.scene.bearing.pitch_diameter))
-        spacing = self.spacing_std / unit if unit > 0.0 else self.spacing_std
-        if not self.has_cage or not self.clearances.radial > 0.0:
-            return observables.motion_settling(self["time"], angle, spacing)
-        place = self["cage_position"] / self.clearances.radial
-        return observables.motion_settling(
-            self["time"], angle, spacing, place, self["cage_angle"], creep_time=self.creep_time
-        )
+        found = {
+            "roller_angle": self["roller_orbit_angle"].mean(axis=1),
+            "spacing": self.spacing_std / unit if unit > 0.0 else self.spacing_std,
+        }
+        if self._knows_cage:
+            place = self["cage_position"] / self.clearances.radial
+            found |= {"position": place, "cage_angle": self["cage_angle"]}
+        return found
 
     @property
     def creep_time(self) -> float:

@@ -57,7 +57,33 @@ def start_state(model: _core.Model, scene: Scene, motion: RingMotion, equilibriu
         state["cage_psi"] = float(np.mean(state["roller_psi"]))
     if scene.effects.has_cage:
         place_cage(model, scene, motion, vector)
+    if scene.start.slip > 0.0:
+        _slow_down(state, scene)
     return vector
+
+
+def _slow_down(state: StateView, scene: Scene) -> None:
+    """Rollers and cage turn slower than in pure rolling by the start's slip, around the bearing and about their axes.
+
+    Velocities of the state are offsets from those of the nominal place in pure rolling.
+    """
+    slip, orbit, geometry = scene.start.slip, _orbit(scene), scene.bearing.geometry
+    inner, outer = (
+        value_at(speed, scene.start.time) * math.pi / 30.0 for speed in (scene.speed_rpm, scene.outer_speed_rpm)
+    )
+    tilt, skew = state["roller_tilt"], state["roller_skew"]
+    angle = geometry.roller_axis_angle + tilt
+    state["roller_v_t"] -= slip * orbit * (geometry.roller_centre_radius + state["roller_r"])
+    if not scene.effects.planar:
+        state["roller_omega_n"] += slip * orbit * np.sin(angle)
+    state["roller_omega_t"] *= 1.0 - slip
+    spin = geometry.roller_spin_ratio * (inner - outer)
+    state["roller_omega_a"] += slip * (spin - orbit * np.cos(angle) * np.cos(skew))
+    if scene.effects.bodies != "rollers":
+        state["cage_omega_a"] -= slip * orbit
+    if scene.effects.has_cage:
+        state["cage_v_x"] *= 1.0 - slip
+        state["cage_v_y"] *= 1.0 - slip
 
 
 def _orbit(scene: Scene) -> float:

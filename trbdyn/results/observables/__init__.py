@@ -23,15 +23,24 @@ if TYPE_CHECKING:
         whirl_frequency as whirl_frequency,
         whirl_frequency_spectral as whirl_frequency_spectral,
     )
-    from trbdyn.results.observables.slow_motion import (
+    from trbdyn.results.observables.rates import (
         LEAST_BLOCKS as LEAST_BLOCKS,
-        LIMITS as LIMITS,
         Drift as Drift,
-        MotionSettling as MotionSettling,
+        Forecast as Forecast,
         by_turns as by_turns,
         drift as drift,
+        forecast as forecast,
         mean_unknown as mean_unknown,
+        side_of as side_of,
+    )
+    from trbdyn.results.observables.slow_motion import (
+        COMPARED as COMPARED,
+        LIMITS as LIMITS,
+        Compared as Compared,
+        MotionSettling as MotionSettling,
+        compare_starts as compare_starts,
         motion_settling as motion_settling,
+        turn_means as turn_means,
         whirl_amplitude as whirl_amplitude,
     )
     from trbdyn.results.observables.energy import (

@@ -9,73 +9,30 @@ told by the rates of change with their errors, and by the time that the creep ta
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from trbdyn.results.observables.rates import FACTOR, LEAST_BLOCKS, Drift, by_turns, drift, mean_unknown
 from trbdyn.results.observables.signals import settling
 
 Array = NDArray[np.float64]
 Answer = Literal["settled", "drifting", "unknown"]
 
-BLOCKS: Final = 12
-"""Stretches of a record into which turns are gathered, at most: the error of a rate comes from their scatter about the line."""
-LEAST_BLOCKS: Final = 5
 LEAST_TURNS: Final = 10
 """Turns of the cage after the transient from which a motion can be called settled."""
 STANDSTILL: Final = 1e-6
 """Turns of the cage up to which it stands: no length of a run can be told from them."""
 CREEP_TIMES: Final = 3.0
 """Length after the transient, in times of the creep, from which a motion can be called settled."""
-SIGNIFICANT: Final = 0.00135
-"""Chance by which scatter alone would show a drift: that of three standard errors, one-sided."""
-BOUND: Final = 0.0228
-"""Chance that a rate lies above its bound: that of two standard errors, one-sided."""
 LEAST_GROWTH: Final = 0.1
 """Growth (ln of the whirl amplitude) over the record after the transient from which a whirl counts as growing."""
 GROWS: Final = "grows"
 LIMITS: Final = {"whirl amplitude": 0.05, "orbit radius": 0.05, "roller spacing": 0.1}
 """Changes that matter, in units of Cpr, Cpr and the angle Cpc/(Dpw/2)."""
-
-
-@dataclass(frozen=True, slots=True)
-class Drift:
-    """Rate of change of a quantity: slope of the least-squares line through the means of blocks of turns.
-
-    Attributes
-    ----------
-    mean : float
-        Mean of the quantity.
-    rate : float
-        Its change in a second.
-    error : float
-        Standard error of the rate, from the scatter of the blocks about the line.
-    freedom : int
-        Degrees of freedom of the error: number of blocks less two.
-    """
-
-    mean: float
-    rate: float
-    error: float
-    freedom: int
-
-    @property
-    def significant(self) -> bool:
-        """Whether the rate stands out of the scatter."""
-        return abs(self.rate) > _factor(SIGNIFICANT, self.freedom) * self.error
-
-    @property
-    def bound(self) -> float:
-        """Largest rate, either way, that the scatter leaves likely."""
-        return abs(self.rate) + _factor(BOUND, self.freedom) * self.error
-
-
-def _factor(chance: float, freedom: int) -> float:
-    from scipy import stats
-
-    return float(stats.t.isf(chance, freedom))
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,33 +85,6 @@ class MotionSettling:
         ] + self.reason
 
 
-def by_turns(turned: ArrayLike, values: ArrayLike) -> Array:
-    """Means over whole turns.
-
-    Parameters
-    ----------
-    turned : array_like, shape (T,)
-        Angle turned, rad.
-    values : array_like, shape (T,)
-        Values.
-
-    Returns
-    -------
-    ndarray, shape (N,)
-        Mean of each whole turn since the first record. nan for a turn without a record.
-    """
-    angle = np.asarray(turned, dtype=float)
-    turns = np.abs(angle - angle[0]) / (2.0 * np.pi)
-    whole = int(turns[-1])
-    index = turns.astype(int)
-    kept = index < whole
-    count = np.bincount(index[kept], minlength=whole)
-    with np.errstate(invalid="ignore"):
-        return np.asarray(
-            np.bincount(index[kept], weights=np.asarray(values, dtype=float)[kept], minlength=whole) / count
-        )
-
-
 def whirl_amplitude(
     time: ArrayLike, position: ArrayLike, cage_angle: ArrayLike
 ) -> tuple[Array, NDArray[np.complex128]]:
@@ -184,71 +114,27 @@ def whirl_amplitude(
     return by_turns(angle, time), by_turns(angle, fixed.real) + 1j * by_turns(angle, fixed.imag)
 
 
-def drift(time: ArrayLike, values: ArrayLike) -> Drift:
-    """Rate of change of a quantity, with its error.
-
-    Parameters
-    ----------
-    time : array_like, shape (N,)
-        Times, s: of turns of the cage, so that nothing periodic within a turn is seen.
-    values : array_like, shape (N,)
-        Means of the turns.
-
-    Returns
-    -------
-    Drift
-
-    Raises
-    ------
-    ValueError
-        If there are fewer values than `LEAST_BLOCKS`.
+def turn_means(
+    time: ArrayLike,
+    roller_angle: ArrayLike,
+    spacing: ArrayLike,
+    position: ArrayLike | None = None,
+    cage_angle: ArrayLike | None = None,
+) -> tuple[Array, dict[str, Array]]:
+    """Means over whole turns of the quantities by which the motion is judged, by the names of `LIMITS`; with the times of the
+    turns, s, shape (N,). Arguments as in `motion_settling`.
     """
-    t, x = np.asarray(time, dtype=float), np.asarray(values, dtype=float)
-    if t.size < LEAST_BLOCKS or t.shape != x.shape:
-        raise ValueError(f"needs at least {LEAST_BLOCKS} times and as many values, not shapes {t.shape} and {x.shape}")
-    parts = np.array_split(np.arange(t.size), min(BLOCKS, t.size))
-    times = np.array([t[part].mean() for part in parts])
-    means = np.array([x[part].mean() for part in parts])
-    centred = times - times.mean()
-    size, freedom = float(centred @ centred), len(parts) - 2
-    rate = float(centred @ means) / size
-    left = means - means.mean() - rate * centred
-    return Drift(float(x.mean()), rate, math.sqrt(float(left @ left) / freedom / size), freedom)
-
-
-def mean_unknown(time: ArrayLike, values: ArrayLike) -> float:
-    """How far the mean of a quantity over turns may lie from the mean that a longer record gives.
-
-    Parameters
-    ----------
-    time : array_like, shape (N,)
-        Times of the turns, s.
-    values : array_like, shape (N,)
-        Means of the turns.
-
-    Returns
-    -------
-    float
-        Two standard errors of the mean (Student's for few turns), and, where the rate stands out of the scatter, what it changes
-        within the record; in the unit of the values.
-
-    Raises
-    ------
-    ValueError
-        If there are fewer values than `LEAST_BLOCKS`.
-
-    Examples
-    --------
-    >>> from trbdyn import observables
-    >>> values = [1.01, 0.99, 1.01, 0.99, 1.01, 0.99, 1.01, 0.99]
-    >>> round(observables.mean_unknown(range(8), values), 4)
-    0.0092
-    """
-    t, x = np.asarray(time, dtype=float), np.asarray(values, dtype=float)
-    found = drift(t, x)
-    moves = abs(found.rate) * float(np.ptp(t)) if found.significant else 0.0
-    left = x - x.mean() - (found.rate * (t - t.mean()) if found.significant else 0.0)
-    return _factor(BOUND, x.size - 1) * math.sqrt(float(left @ left) / (x.size - 1) / x.size) + moves
+    t, turned = np.asarray(time, dtype=float), np.asarray(roller_angle, dtype=float)
+    when = by_turns(turned, t)
+    means = {"roller spacing": by_turns(turned, np.asarray(spacing, dtype=float))}
+    if position is not None and cage_angle is not None:
+        centre = np.asarray(position, dtype=float)
+        x, y = by_turns(turned, centre[:, 0]), by_turns(turned, centre[:, 1])
+        square = by_turns(turned, centre[:, 0] ** 2 + centre[:, 1] ** 2)
+        means["orbit radius"] = np.sqrt(np.maximum(square - x**2 - y**2, 0.0))
+        means["whirl amplitude"] = np.abs(whirl_amplitude(t, centre, cage_angle)[1])
+    count = min(when.size, *map(len, means.values()))  # rollers and cage may end in different turns
+    return when[:count], {name: values[:count] for name, values in means.items()}
 
 
 def motion_settling(
@@ -314,16 +200,9 @@ def motion_settling(
         signals["orbit radius"] = np.hypot(centre[:, 0] - centre[:, 0].mean(), centre[:, 1] - centre[:, 1].mean())
     found = settling(t, np.column_stack(list(signals.values())), min(int(turns), 50))
     rest = slice(found.index, None)
-    when = by_turns(turned[rest], t[rest])
-    means = {"roller spacing": by_turns(turned[rest], spread[rest])}
-    if centre is not None and cage_angle is not None:
-        part, angle = centre[rest], np.asarray(cage_angle, dtype=float)[rest]
-        x, y = by_turns(turned[rest], part[:, 0]), by_turns(turned[rest], part[:, 1])
-        square = by_turns(turned[rest], part[:, 0] ** 2 + part[:, 1] ** 2)
-        means["orbit radius"] = np.sqrt(np.maximum(square - x**2 - y**2, 0.0))
-        means["whirl amplitude"] = np.abs(whirl_amplitude(t[rest], part, angle)[1])
-    count = min(when.size, *map(len, means.values()))  # rollers and cage may end in different turns
-    when, means = when[:count], {name: values[:count] for name, values in means.items()}
+    angle = None if cage_angle is None else np.asarray(cage_angle, dtype=float)[rest]
+    when, means = turn_means(t[rest], turned[rest], spread[rest], None if centre is None else centre[rest], angle)
+    count = when.size
     length = float(t[-1] - found.time)
 
     def result(
@@ -388,3 +267,111 @@ def _moving(
 def _matters(size: float, rate: float, horizon: float) -> bool:
     """Whether growth at this rate goes beyond its limit within the horizon."""
     return bool(size * math.expm1(min(rate * horizon, 100.0)) > LIMITS["whirl amplitude"])
+
+
+COMPARED: Final = "orbit radius"
+"""Quantity by which starts are compared."""
+MOVED: Final = 0.02
+"""Way of the middle start within what is judged from which on a direction is told, in units of Cpr."""
+
+
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """What runs from several starts, side by side, tell of the motion in the long run.
+
+    Attributes
+    ----------
+    verdict : {"agreed", "grows", "dies", "two motions", "unknown"}
+        Agreed: all starts have come to the same motion. Grows, dies: they have not, and the start between the two others moves
+        towards the larger or the smaller one. Two motions: the outer ones have settled apart, and the start between them has gone
+        to one of them, so that the start decides. Unknown: none of these.
+    orbit : float
+        Agreed: the orbit of the cage, mean of the starts. Grows, dies: that of the start towards which it moves. Over Cpr.
+    error : float
+        Largest difference of a start from it, or half of the way that is left (Cpr).
+    rate : float
+        Rate of the start between, Cpr in a second; nan where there is none.
+    rate_error : float
+        Its standard error.
+    time_low, time_high : float
+        Grows, dies: how much longer the way is expected to take, s.
+    reason : str
+        Unknown: why.
+    """
+
+    verdict: Literal["agreed", "grows", "dies", "two motions", "unknown"]
+    orbit: float
+    error: float
+    rate: float = math.nan
+    rate_error: float = math.nan
+    time_low: float = math.nan
+    time_high: float = math.nan
+    reason: str = ""
+
+
+def compare_starts(
+    outer: tuple[tuple[Array, Array], tuple[Array, Array]],
+    between: tuple[Array, Array] | None = None,
+    *,
+    window: int,
+    creep_turns: float = math.nan,
+    kinds: Collection[str] = (),
+) -> Compared:
+    """What runs from a quiet start, from a large whirl and, where these do not agree, from one between tell.
+
+    Parameters
+    ----------
+    outer : pair of pairs of arrays
+        Times (s) and orbit radius over Cpr by turns of the cage: of the run from rest and of the one from a large whirl.
+    between : pair of arrays, optional
+        The same of the start between; its first window is left out as a transient.
+    window : int
+        Turns of the cage in a window: the last window of each run is compared.
+    creep_turns : float
+        Time of the rollers' creep in turns of the cage; nan where it is not known.
+    kinds : collection of str, optional
+        Classes of the motion in the last window of the outer runs: only those of one class agree.
+
+    Returns
+    -------
+    Compared
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from trbdyn import observables
+    >>> turns = np.arange(60.0)
+    >>> found = observables.compare_starts(((turns, 0 * turns + 0.1), (turns, 0.1 + 0.8 * np.exp(-turns / 5))), window=20)
+    >>> found.verdict, round(found.orbit, 2)
+    ('agreed', 0.1)
+    """
+    limit = LIMITS[COMPARED]
+    ends = [float(values[-window:].mean()) for _, values in outer]
+    unknown = [mean_unknown(when[-window:], values[-window:]) for when, values in outer]
+    middle, apart = 0.5 * sum(ends), abs(ends[1] - ends[0])
+    if apart <= limit and max(unknown) <= limit and len(set(kinds)) <= 1:
+        return Compared("agreed", middle, 0.5 * apart + max(unknown))
+    creeps = "" if math.isnan(creep_turns) else f"; the rollers creep within {creep_turns:.3g} turns of the cage"
+    if between is None or between[1].size < 2 * window:
+        reason = f"from rest the orbit is {ends[0]:.2f} Cpr, from a large whirl {ends[1]:.2f} Cpr{creeps}"
+        return Compared("unknown", middle, 0.5 * apart, reason=reason)
+    when, values = between[0][window:], between[1][window:]
+    found = drift(when, values)
+    now = float(values[-window:].mean())
+    moved = abs(found.rate) * float(np.ptp(when))
+    rates = (found.rate, found.error)
+    near = min(range(2), key=lambda k: abs(now - ends[k]))
+    stand = all(not drift(when[-2 * window :], values[-2 * window :]).significant for when, values in outer)
+    if abs(now - ends[near]) <= limit and apart > limit and stand:
+        turns = min(values.size for _, values in outer)
+        if not math.isnan(creep_turns) and turns >= CREEP_TIMES * creep_turns:
+            return Compared("two motions", ends[near], 0.5 * apart, *rates)
+    if found.significant and moved > MOVED:
+        to = max(ends) if found.rate > 0.0 else min(ends)
+        way = max(abs(to - now), limit)
+        left = way / abs(found.rate) * max(math.log(way / limit), 1.0)
+        verdict: Literal["grows", "dies"] = "grows" if found.rate > 0.0 else "dies"
+        return Compared(verdict, to, 0.5 * abs(to - now), *rates, left / FACTOR, left * FACTOR)
+    still = f"a start between them moves by {found.rate:+.2g} with an error of {found.error:.1g} Cpr in a second"
+    reason = f"from rest the orbit is {ends[0]:.2f} Cpr, from a large whirl {ends[1]:.2f} Cpr, and {still}{creeps}"
+    return Compared("unknown", middle, 0.5 * apart, *rates, reason=reason)
