@@ -90,6 +90,7 @@ if TYPE_CHECKING:
     from trbdyn.study.optimise import optimise as optimise
     from trbdyn.study.planning import plan as plan
     from trbdyn.study.preload_over import preload_over as preload_over
+    from trbdyn.study.preload_range import preload_range as preload_range
     from trbdyn.study.spectrum import series_table as series_table, spectrum as spectrum
     from trbdyn.study.surrogate import surrogate as surrogate
     from trbdyn.study.thermal import thermal as thermal

@@ -28,6 +28,7 @@ OF_ANY: dict[str, Callable[[Any], Any]] = {
 } | {
     "plan": lambda given: trb.plan(given, {"torque": 0.02}),
     "optimise": lambda given: trb.optimise(given, {"scene.axial_load": (1e3, 2e3)}, {"torque": "least"}),
+    "cage_answer": trb.cage_answer,
     "whirl_onset": lambda given: trb.whirl_onset(given, [1000.0, 2000.0]),
     "thermal": lambda given: trb.thermal(given, trb.HeatPaths(oil_flow=30.0)),
 }

@@ -31,9 +31,7 @@ def test_the_least_load_lies_between_loads() -> None:
     assert least_of(loads, slips, 0.3) == pytest.approx(10.0 * 10.0 ** (0.2 / 0.3))
     assert least_of(loads, slips, 0.6) == 10.0
     assert least_of(loads, slips, 0.005) == math.inf
-    assert (
-        least_of(loads, np.array([0.01, math.nan, 0.2]), 0.1) > 100.0
-    )
+    assert least_of(loads, np.array([0.01, math.nan, 0.2]), 0.1) > 100.0
     assert math.isnan(least_of(loads, np.array([0.01, 0.5, math.nan]), 0.1))
     assert (
         least_of(loads, np.array([0.01, 0.05, 0.2]), 0.1) > 100.0

@@ -194,6 +194,27 @@ def test_a_play_that_opens_is_no_preload_that_runs_away() -> None:
     assert "heat makes preload" not in str(found)
 
 
+def test_a_range_of_plays_has_its_best_marked() -> None:
+    """Each row is that of preload_over; where the preload is heavy the life is short, and the shaft stiffer than with play."""
+    one, seat = pair(), trb.Mounting(**SEAT)
+    plays = [-100e-6, -20e-6, 60e-6]
+    found = trb.preload_range(one, seat, plays[::-1], temperature=40.0)
+    assert [row.play for row in found.rows] == plays
+    alone = trb.preload_over(one.replace(bearings=tuple(b.replace(end_play=-10e-6) for b in one.bearings)), seat, [40.0])
+    assert found.rows[1].life_hours == pytest.approx(alone.rows[0].modified_reference_life_hours, rel=1e-9)
+    lives = [row.life_hours for row in found.rows]
+    assert found.best is not None
+    assert found.best[0] <= plays[int(np.argmax(lives))] <= found.best[1]
+    assert found.rows[0].found.axial_stiffness > found.rows[2].found.axial_stiffness
+    assert "best: " in str(found)
+    beyond = trb.preload_range(trb.cases.scene_nj210(), CYLINDER, [20e-6, 60e-6])
+    assert beyond.rows[0].found.radial_stiffness > beyond.rows[1].found.radial_stiffness
+    with pytest.raises(trb.InputError, match="which have a play"):
+        trb.preload_range(trb.cases.scene_30310(), seat, [0.0])
+    with pytest.raises(trb.InputError, match="one play or more"):
+        trb.preload_range(one, seat, [])
+
+
 def spindle(speed_rpm: float, arrangement: str, spread: float) -> trb.Assembly:
     """That of docs/howto/spindle.md."""
     shaft = trb.Shaft.hollow_cylinder(mass=12.0, inner_diameter=0.02, outer_diameter=0.05, length=0.45)

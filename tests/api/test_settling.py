@@ -194,3 +194,105 @@ def test_bounds_of_a_rate() -> None:
         assert few.bound == pytest.approx(0.3 + 2.869 * 0.05, rel=2e-3)
     for rate, stands_out in ((0.155, True), (0.145, False), (-0.155, True), (-0.145, False)):
         assert type(many)(mean=1.0, rate=rate, error=0.05, freedom=10**7).significant is stands_out
+
+
+def slow(rng: np.random.Generator, count: int, memory: int, size: float) -> np.ndarray:
+    """Scatter of a size that remembers itself over some records."""
+    from scipy import signal
+
+    keep = math.exp(-1.0 / memory)
+    return np.asarray(signal.lfilter([1.0], [1.0, -keep], rng.normal(size=count) * size * math.sqrt(1.0 - keep**2)))
+
+
+def test_a_promised_length_holds() -> None:
+    """Records that grow by a fifth from look to look until they are told: the length lies in at least nine of ten ranges that
+    were promised before, and none has settled sooner than was said.
+    """
+    step, last = 2e-3, 20.0
+    t = np.arange(0.0, last, step)
+    held: list[bool] = []
+    for seed in range(6):
+        for memory, size, creep in ((10, 0.05, 1.0), (10, 0.15, 0.1), (50, 0.05, 0.1)):
+            rng = np.random.default_rng(seed)
+            place = (0.5 + slow(rng, t.size, memory, size)) * np.exp(1j * CAGE * t)
+            centre, spacing = np.column_stack([place.real, place.imag]), 0.3 + slow(rng, t.size, memory, 0.1 * size)
+            length, promised = 0.6, []
+            while length < last:
+                cut = slice(0, int(length / step))
+                found = obs.motion_settling(t[cut], CAGE * t[cut], spacing[cut], centre[cut], CAGE * t[cut], creep)
+                if found.answer != "unknown":
+                    break
+                promised.append((found.needed, found.needed_high))
+                length *= 1.2
+            for low, high in promised:
+                assert found.answer != "settled" or length >= low / 1.2
+                if not math.isnan(high):
+                    held.append(length <= 1.2 * high)
+    assert len(held) > 40
+    assert np.mean(held) >= 0.9
+
+
+def test_a_mean_is_known_as_the_square_root_of_the_length() -> None:
+    """Sixteen times the turns, a quarter of the error; and the interval holds the true mean."""
+    widths, held = [], []
+    for count in (24, 384):
+        found = []
+        for seed in range(60):
+            values = 1.0 + 0.01 * np.random.default_rng(seed).normal(size=count)
+            found.append(obs.mean_unknown(np.arange(count), values))
+            held.append(abs(values.mean() - 1.0) <= found[-1])
+        widths.append(np.median(found))
+    assert widths[0] / widths[1] == pytest.approx(4.0, rel=0.25)
+    assert np.mean(held) > 0.9
+
+
+@pytest.mark.parametrize(
+    ("start", "rate", "side"), [(0.08, 0.002, "above"), (0.03, 0.0, "below"), (0.06, 0.0015, "unknown")]
+)
+def test_a_side_of_a_limit(start: float, rate: float, side: str) -> None:
+    """3 % of slip that grows does not stay below 10 %, however small its change from quarter to quarter."""
+    time = np.arange(24.0)
+    assert obs.side_of(0.1, time, start + rate * time + 1e-4 * np.sin(7.0 * time)) == side
+
+
+@pytest.mark.parametrize("end", [0.2, 0.9])
+def test_a_forecast_holds_the_end(end: float) -> None:
+    """An exponential approach with scatter, seen over one time scale: its end and the time to come there lie in the range."""
+    held = []
+    for seed in range(20):
+        t = np.linspace(0.0, 2.0, 120)
+        rng = np.random.default_rng(seed)
+        found = obs.forecast(t, end + (0.5 - end) * np.exp(-t / 2.0) + 0.003 * rng.normal(size=t.size))
+        held.append(found.low <= end <= found.high and found.time_low <= 2.0 * math.log(20.0) <= found.time_high)
+    assert np.mean(held) >= 0.9
+    grows = obs.forecast(t, 0.01 * np.exp(t))
+    assert grows.high == grows.time_high == math.inf
+
+
+def whirling(values: Any, turns: int = 120) -> tuple[np.ndarray, np.ndarray]:
+    """Orbit by turns of the cage, with a scatter of 0.003 Cpr."""
+    t = np.arange(turns) * 0.05
+    return t, np.asarray(values(t)) + 0.003 * np.random.default_rng(turns).normal(size=turns)
+
+
+def test_starts_side_by_side() -> None:
+    """Agreed from both sides; one direction, with a forecast; two motions; and nothing to be told, with the reason."""
+    rest, large = whirling(lambda t: 0.1 + 0 * t), whirling(lambda t: 0.1 + 0.8 * np.exp(-t))
+    found = obs.compare_starts((rest, large), window=20)
+    assert found.verdict == "agreed"
+    assert found.orbit == pytest.approx(0.1, abs=found.error)
+    assert obs.compare_starts((rest, large), window=20, kinds=["rocking", "stable"]).verdict == "unknown"
+    high = whirling(lambda t: 0.9 + 0 * t)
+    between = whirling(lambda t: 0.3 + 0.056 * t, 60)
+    grows = obs.compare_starts((rest, high), between, window=20, creep_turns=90.0)
+    assert grows.verdict == "grows"
+    assert grows.rate == pytest.approx(0.056, abs=4.0 * grows.rate_error)
+    assert grows.orbit == pytest.approx(0.9, abs=0.01)
+    assert grows.time_low < (0.9 - 0.45) / 0.056 < grows.time_high
+    dies = obs.compare_starts((rest, high), whirling(lambda t: 0.5 - 0.056 * t, 60), window=20)
+    assert (dies.verdict, round(dies.orbit, 1)) == ("dies", 0.1)
+    gone = whirling(lambda t: 0.9 - 0.6 * np.exp(-4.0 * t), 120)
+    assert obs.compare_starts((rest, high), gone, window=20, creep_turns=30.0).verdict == "two motions"
+    still = obs.compare_starts((rest, high), whirling(lambda t: 0.3 + 0 * t, 60), window=20, creep_turns=5000.0)
+    assert still.verdict == "unknown"
+    assert "creep within 5e+03 turns" in still.reason

@@ -127,7 +127,9 @@ def test_what_has_not_settled_is_not_judged(result: trb.Result) -> None:
     told = {head: (grade, text) for grade, head, text in verdict(result, values)}
     grade, text = told["The cage's motion cannot be told yet"]
     assert grade == "plain"
-    assert f"A run of about {values['settling_needed']:.0f} s" in text
+    assert f"A run of at least {values['settling_needed']:.0f} s" in text
+    longer = {head: text for _, head, text in verdict(result, values | {"settling_needed_to": 99.0})}
+    assert f"A run of {values['settling_needed']:.0f} to 99 s" in longer["The cage's motion cannot be told yet"]
     assert "turns of the shaft" in text
     assert told["Hits on the cage so far"][0] == "plain"
     assert told["Films: cannot be told yet"][0] == "plain"

@@ -8,6 +8,7 @@ rollers on.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any, Final
 
 import numpy as np
@@ -206,10 +207,20 @@ def _needed(numbers: dict[str, Any]) -> str:
     needed, length = numbers.get("settling_needed"), numbers.get("duration")
     if not needed or not length:
         return ""
-    turns = numbers["revolutions"] * needed / length
+    highest = numbers.get("settling_needed_to")
+    turns = numbers["revolutions"] / length
     wall = numbers.get("wall_s_per_revolution")
-    cost = f", about {_time(wall * turns)} of computing" if wall and turns else ""
-    return f"A run of about {_two(needed)} s ({_two(turns)} turns of the {_ring(numbers)}{cost}) is expected to tell. "
+
+    def words(of: Callable[[float], str]) -> str:
+        return f"{of(needed)} to {of(highest)}" if highest and of(highest) != of(needed) else of(needed)
+
+    least = "" if highest else "at least "
+    cost = f", about {words(lambda t: _time(wall * turns * t))} of computing" if wall and turns else ""
+    of_turns = words(lambda t: _two(turns * t))
+    return (
+        f"A run of {least}{words(_two)} s ({of_turns} turns of the {_ring(numbers)}{cost}) is expected to tell; "
+        "trb.cage_answer compares several starts, which often tells sooner. "
+    )
 
 
 def _ring(numbers: dict[str, Any]) -> str:

@@ -4,14 +4,15 @@
 Each average of the summary is computed again in each turn, or some turns, of the cage, and the values tell the error of the
 whole (`trbdyn.observables.mean_error`). What is no mean, such as a percentile, is first made one by its influence function.
 Where the cage's motion is not known to have settled, averages of that motion have no interval; those of loads, films, speeds and
-losses, which follow the load at once, have, and what the cage takes of the losses is added to those of torque and power loss.
+losses, which follow the load at once, have, and what the scatter and the rate of the cage's share of the losses leave open is
+added to those of torque and power loss.
 Another whirl that another start would lead to, and errors of the model, are not in them.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final
 
@@ -58,6 +59,7 @@ def confidence(
     wanted = [row for row in rows if row.interval in FOLLOWING or not unsettled]
     plain = [row for row in wanted if row.series is None]
     parts = [average(window.window(time[a], time[b]), plain) for a, b in pairwise(edges)]
+    of_cage = _of_cage(window, edges) if unsettled else 0.0
     widths: dict[str, float] = {}
     untold: list[str] = []
     for row in wanted:
@@ -71,9 +73,7 @@ def confidence(
             continue
         width = observables.half_width(values)
         if math.isfinite(width):
-            widths[name] = width + (
-                _of_cage(window) * abs(float(values.mean())) if unsettled and row.interval == "loss" else 0.0
-            )
+            widths[name] = width + (of_cage * abs(float(values.mean())) if row.interval == "loss" else 0.0)
         else:
             untold.append(name)
     each = f"{turns / (len(edges) - 1):.2g} turns of the cage" if turns else f"{time[edges[1]] - time[edges[0]]:.3g} s"
@@ -86,13 +86,19 @@ def confidence(
     )
 
 
-def _of_cage(window: Result) -> float:
-    """Share of the losses that the cage has part in."""
+def _of_cage(window: Result, edges: Sequence[int]) -> float:
+    """How far the share of the losses that the cage has part in may be off: it goes with the cage's motion, so its rate and its
+    scatter over the batches count.
+    """
     if "power" not in window.groups:
         return 0.0
-    split = window.power_split
-    lost = sum(split.values())
-    return sum(value for name, value in split.items() if name.startswith(OF_CAGE)) / lost if lost > 0.0 else 0.0
+    time = window["time"]
+    splits = [window.window(time[a], time[b]).power_split for a, b in pairwise(edges)]
+    lost = float(np.mean([sum(split.values()) for split in splits]))
+    if not lost > 0.0:
+        return 0.0
+    cage = [sum(value for name, value in split.items() if name.startswith(OF_CAGE)) for split in splits]
+    return observables.mean_unknown([0.5 * (time[a] + time[b]) for a, b in pairwise(edges)], np.array(cage) / lost)
 
 
 def _batches(window: Result) -> tuple[list[int], float]:

@@ -192,8 +192,8 @@ def cage_answer(
 
     Runs from rest and from a large whirl go on side by side in threads, window by window of 20 turns of the cage, until both
     have come to the same motion. Where they have not after three windows, a third run from a whirl of 0.3 of the play shows the
-    direction, with its rate. A search ends when the starts agree, or when the processor time is spent; then it gives the direction and a
-    forecast, or the reason why nothing can be told.
+    direction, with its rate. A search ends when the starts agree, or when the processor time is spent; then it gives the
+    direction and a forecast, or the reason why nothing can be told.
 
     Parameters
     ----------

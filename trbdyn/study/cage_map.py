@@ -87,8 +87,8 @@ def cage_map(
     """What the cage of a scene, or those of bearings on a shaft, do at each of some speeds and axial loads, from rest and from a
     large whirl.
 
-    A run ends when it is decided: after 40 turns of the cage where class and orbit stand; where they do not, after 160 or 640,
-    as in `whirl_onset`.
+    A run ends when it is decided: after 40 turns of the cage where the motion has settled or both starts agree; else after 160 or
+    640, as in `whirl_onset`.
 
     Parameters
     ----------

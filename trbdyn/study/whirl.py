@@ -1,9 +1,11 @@
 """From which speed on a cage whirls: runs over speeds from two starts, longer where their motion is not decided, and a search
 between the speeds where it changes.
 
-What a cage does may depend on how it began. A run is decided when the third and the last quarter of it have the same class
-(`trbdyn.observables.classify`) and an orbit of nearly the same size; one that is not is made again, four times as long. The class
-of a cage that creeps towards a whirl over thousands of turns is that of its last quarter, and it stands there as not decided.
+What a cage does may depend on how it began. A run is decided when its motion has settled by the rule of all runs
+(`Result.settling`), or when the runs from both starts have come to the same class (`trbdyn.observables.classify`) and orbit; one
+that is not is made again, four times as long. The class of a cage that creeps towards a whirl over thousands of turns is that of
+its last quarter, and it stands there as not decided; where the creep of the rollers is so slow that no longer run would tell,
+none is made.
 """
 
 from __future__ import annotations
@@ -23,6 +25,8 @@ from trbdyn.model.assembly import Assembly, Subject
 from trbdyn.model.scene import Scene
 from trbdyn.model.start import Start
 from trbdyn.results.assembly import AssemblyResult
+from trbdyn.results.observables import LIMITS
+from trbdyn.results.observables.slow_motion import CREEP_TIMES
 from trbdyn.results.result import Result
 from trbdyn.run.options import RunOptions
 from trbdyn.study.definition import Case
@@ -37,8 +41,8 @@ KINDS: Final = ("unknown", "stable", "rocking", "circling", "unstable")
 """Classes, as `trbdyn.observables.classify` names them."""
 TURNS: Final = (40.0, 160.0, 640.0)
 """Turns of the cage after which a run is judged; the next number where it is not decided."""
-STEADY: Final = 0.1
-"""Largest change of the orbit between the last two quarters of a decided run, over the radial play."""
+AGREE: Final = LIMITS["orbit radius"]
+"""Difference of the orbits of runs from both starts up to which they agree, over the radial play."""
 RECORDS_A_TURN: Final = 32
 GROUPS: Final = ("cage", "rollers", "peaks")
 STARTS: Final = {"equal": Start.equal(), "whirl": Start.whirl(0.9)}
@@ -53,7 +57,7 @@ ABOUT: Final = {
     "message": ("", ""),
 }
 """What is kept of a run."""
-UNKNOWN: Final = {"kind": "unknown", "orbit": np.nan, "hits": np.nan, "impulse": np.nan}
+UNKNOWN: Final = {"kind": "unknown", "orbit": np.nan, "hits": np.nan, "impulse": np.nan, "needed": 0.0}
 """The same of a run that failed."""
 
 Point = tuple[str, float, float | None]
@@ -91,10 +95,22 @@ def impulse_at_end(result: Result | AssemblyResult) -> float:
     return sum(one.hits * one.impulse_per_hit for one in found) / max(1, sum(one.hits for one in found))
 
 
+def settled(result: Result | AssemblyResult) -> float:
+    """1 where the motion of each bearing has settled, else 0."""
+    return float(all(one.settling().settled for one in result.parts))
+
+
+def needed_turns(result: Result | AssemblyResult) -> float:
+    """Turns of the cage after which the creep of the rollers lets the motion be told (1); 0 where it is not known."""
+    rates = [abs(float(np.mean(one.rolling_orbit))) / (2.0 * np.pi) for one in result.parts]
+    found = (CREEP_TIMES * one.creep_time * rate for one, rate in zip(result.parts, rates, strict=True))
+    return max((turns for turns in found if np.isfinite(turns)), default=0.0)
+
+
 OBSERVED: Final[Mapping[str, Observable]] = {
-    "kind_before": partial(kind_in, 2),
+    "settled_by_rule": settled,
+    "needed_turns": needed_turns,
     "kind_at_end": partial(kind_in, 3),
-    "orbit_before": partial(orbit_in, 2),
     "orbit_at_end": partial(orbit_in, 3),
     "hits_at_end": hits_at_end,
     "impulse_at_end": impulse_at_end,
@@ -183,7 +199,8 @@ def whirl_onset(
     the cage does that moves most.
 
     Every speed is run from each start: from rest in the middle between even rollers, and from a large whirl, which tells whether
-    a whirl lasts. A run has 40 turns of the cage; where its motion is not decided it is made again over 160, and then 640.
+    a whirl lasts. A run has 40 turns of the cage; where neither its motion has settled nor both starts agree it is made again
+    over 160, and then 640, unless the rollers creep so slowly that this would not tell.
 
     Parameters
     ----------
@@ -275,11 +292,22 @@ class CageRuns:
 
     def add(self, points: Sequence[Point]) -> None:
         """Run points until they are decided."""
-        turns = (*(turns for turns in TURNS if turns < self.longest), self.longest)
-        new = [point for point in points if point not in self.rows]
-        self.rows |= run_until_settled(
-            new, turns, lambda point, n: self._case(*point, n), _row, OBSERVED, self.how, UNKNOWN
-        )
+        waiting = [point for point in points if point not in self.rows]
+        for turns in (*(turns for turns in TURNS if turns < self.longest), self.longest):
+            made = run_until_settled(
+                waiting, (turns,), lambda point, n: self._case(*point, n), _row, OBSERVED, self.how, UNKNOWN
+            )
+            self.rows |= made
+            for place in {point[1:] for point in waiting}:
+                both = [self.rows[point] for name in self.starts if (point := (name, *place)) in self.rows]
+                if len(both) > 1 and _agree(both):
+                    for row in both:
+                        row["settled"] = True
+            waiting = [point for point in waiting if not self._ends(self.rows[point])]
+
+    def _ends(self, row: Mapping[str, Any]) -> bool:
+        """Whether a longer run of a point is of no use."""
+        return bool(row["settled"] or row["message"] or row["needed"] > self.longest)
 
     def _case(self, start: str, speed: float, load: float | None, turns: float) -> Case:
         parameters = {"start": start, "speed_rpm": speed} | ({} if load is None else {"axial_load": load})
@@ -327,8 +355,14 @@ class CageRuns:
 
 def _row(found: xarray.Dataset) -> dict[str, Any]:
     """What is kept of a run."""
-    before, last = (KINDS[int(found[name])] for name in ("kind_before", "kind_at_end"))
-    orbits = [float(found[name]) for name in ("orbit_before", "orbit_at_end")]
-    settled = before == last != "unknown" and abs(orbits[1] - orbits[0]) <= STEADY
+    kind = KINDS[int(found["kind_at_end"])]
     rattle = {"hits": float(found["hits_at_end"]), "impulse": float(found["impulse_at_end"])}
-    return {"kind": last, "orbit": orbits[1], **rattle, "settled": settled}
+    told = kind != "unknown" and bool(found["settled_by_rule"])
+    needed = float(found["needed_turns"])
+    return {"kind": kind, "orbit": float(found["orbit_at_end"]), **rattle, "settled": told, "needed": needed}
+
+
+def _agree(rows: Sequence[Mapping[str, Any]]) -> bool:
+    """Whether runs from both starts, of one length, have come to the same motion."""
+    kinds, orbits = {row["kind"] for row in rows}, [row["orbit"] for row in rows]
+    return len(kinds) == 1 and kinds != {"unknown"} and bool(np.ptp(orbits) <= AGREE)

@@ -31,6 +31,12 @@ CREEP_TIMES: Final = 3.0
 LEAST_GROWTH: Final = 0.1
 """Growth (ln of the whirl amplitude) over the record after the transient from which a whirl counts as growing."""
 GROWS: Final = "grows"
+LONGER: Final = 2.5
+"""Factor of the longest length that is expected to tell: so that nine of ten records are told within the range."""
+KNOWN_TURNS: Final = 24
+"""Turns after the transient from which the scatter is known well enough for a longest length."""
+SHORT_MEMORY: Final = 1.1
+"""Factor of the error by the memory of blocks up to which a length is told from their scatter."""
 LIMITS: Final = {"whirl amplitude": 0.05, "orbit radius": 0.05, "roller spacing": 0.1}
 """Changes that matter, in units of Cpr, Cpr and the angle Cpc/(Dpw/2)."""
 
@@ -57,9 +63,12 @@ class MotionSettling:
     drifts : dict of str to Drift
         The rates, by the names of `LIMITS`; empty for records that are too short.
     needed : float
-        Length of a record that is expected to tell whether the motion has settled, s; nan where it is told already or no
-        length is known. Unknown: ten turns of the cage and three times of the creep after the transient, and so long that the
+        Shortest length of a record that is expected to tell whether the motion has settled, s; nan where it is told already or
+        no length is known. Unknown: ten turns of the cage and three times of the creep after the transient, and so long that the
         rates are known well enough. Drifting: three time scales of the drift more.
+    needed_high : float
+        Longest length that is expected to be needed, s; nan where none is known: in records that are too short to show scatter,
+        of scatter as slow as the blocks of the record, and of a whirl that grows.
     growth_rate : float
         Rate of an exponential growth of the whirl, 1/s; 0 where it does not grow so. It does not tell what a whirl grows to.
     """
@@ -73,6 +82,7 @@ class MotionSettling:
     drifts: dict[str, Drift] = field(default_factory=dict)
     needed: float = math.nan
     growth_rate: float = 0.0
+    needed_high: float = math.nan
 
     @property
     def settled(self) -> bool:
@@ -212,7 +222,15 @@ def motion_settling(
         drifts: dict[str, Drift] | None = None,
         needed: float = found.time - first + after,
     ) -> MotionSettling:
-        return MotionSettling(answer, found.index, found.time, scale, reason, creep_time, drifts or {}, needed)
+        rates = drifts or {}
+        scatters = {name: one for name, one in rates.items() if _share(name, one, length) > 1.0}
+        likely = max((length * _share(name, one, length) ** 2 for name, one in scatters.items()), default=0.0)
+        known = answer != "settled" and when.size >= KNOWN_TURNS
+        known = known and all(one.memory < SHORT_MEMORY for one in scatters.values())
+        high = LONGER * max(needed, 2.0 * after if answer == "unknown" else 0.0, likely) if known else math.nan
+        return MotionSettling(
+            answer, found.index, found.time, scale, reason, creep_time, rates, needed, needed_high=high
+        )
 
     if count < LEAST_BLOCKS or not all(np.isfinite(values).all() for values in means.values()):
         return result(
@@ -225,7 +243,8 @@ def motion_settling(
         name, scale, words = min(moving, key=lambda entry: entry[1])
         still = float(t[-1]) - first + CREEP_TIMES * scale
         drifting = result("drifting", f"the {name} {words}, time scale {scale:.2g} s", scale, drifts, still)
-        return replace(drifting, growth_rate=next((1.0 / one for _, one, how in moving if how == GROWS), 0.0))
+        growth = next((1.0 / one for _, one, how in moving if how == GROWS), 0.0)
+        return replace(drifting, growth_rate=growth, needed_high=math.nan if growth else drifting.needed_high)
     if not math.isnan(creep_time) and length < CREEP_TIMES * creep_time:
         return result(
             "unknown",
@@ -236,14 +255,17 @@ def motion_settling(
     if when.size < LEAST_TURNS:
         return result("unknown", f"only {when.size} turns of the cage after the transient", drifts=drifts)
     for name, rate in drifts.items():
-        if rate.bound * length > 2.0 * LIMITS[name]:
+        if _share(name, rate, length) > 1.0:
             unit = "Cpc" if name == "roller spacing" else "Cpr"
             size = f"its rate is {rate.rate:.2g} with an error of {rate.error:.1g} {unit} in a second"
-            # the error of a rate goes down with the length to the power 1.5, so what it may add up to with its square root
-            longer = length * (rate.bound * length / (2.0 * LIMITS[name])) ** 2
-            needed = found.time - first + longer
+            needed = float(t[-1]) - first  # what the rates may add up to goes down with the square root of the length
             return result("unknown", f"the {name} scatters too much: {size}", drifts=drifts, needed=needed)
     return result("settled", "", drifts=drifts, needed=math.nan)
+
+
+def _share(name: str, rate: Drift, length: float) -> float:
+    """What the largest likely rate changes in a time (s), over twice the limit of the quantity (1)."""
+    return rate.bound * length / (2.0 * LIMITS[name])
 
 
 def _moving(
@@ -369,7 +391,8 @@ def compare_starts(
     if found.significant and moved > MOVED:
         to = max(ends) if found.rate > 0.0 else min(ends)
         way = max(abs(to - now), limit)
-        left = way / abs(found.rate) * max(math.log(way / limit), 1.0)
+        # between a constant rate and an exponential approach that ends within the limit
+        left = way / abs(found.rate) * math.sqrt(max(math.log(way / limit), 1.0))
         verdict: Literal["grows", "dies"] = "grows" if found.rate > 0.0 else "dies"
         return Compared(verdict, to, 0.5 * abs(to - now), *rates, left / FACTOR, left * FACTOR)
     still = f"a start between them moves by {found.rate:+.2g} with an error of {found.error:.1g} Cpr in a second"

@@ -146,10 +146,18 @@ BEGIN: Final = (
     ),
     Number(
         "settling_needed",
-        "length of a run expected to tell",
+        "least length of a run expected to tell",
         "s",
-        "So long a run is expected to tell whether its motion has settled.",
+        "At least so long a run is needed to tell whether its motion has settled.",
         _of_settling(lambda found: found.needed),
+        "time",
+    ),
+    Number(
+        "settling_needed_to",
+        "largest length of a run expected to tell",
+        "s",
+        "At most so long a run is expected to be needed for it, where that is known.",
+        _of_settling(lambda found: found.needed_high),
         "time",
     ),
     Number(

@@ -1,0 +1,69 @@
+"""What a cage does in the long run: one quick scene from all starts, what is said of scatter, and what is refused."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+import trbdyn as trb
+from trbdyn.results.observables import Compared
+from trbdyn.study.cage_answer import CageAnswer, OfRollers
+
+SCENE = trb.cases.scene_30310(3000.0, 4930.0)
+
+
+def row(scatter: float, verdict: Any, orbit: float, kind: str, **more: Any) -> OfRollers:
+    return OfRollers("", scatter, 1, Compared(verdict, orbit, 0.02, **more), kind, 12.0, 30.0, 120, 9.0)
+
+
+def test_scatter_that_changes_the_answer_is_said() -> None:
+    falls = row(0.0, "dies", 0.10, "stable", rate=-0.02, rate_error=0.001, time_low=4.0, time_high=16.0)
+    told = CageAnswer(
+        (falls, row(0.2e-6, "agreed", 0.90, "circling"), row(1e-6, "agreed", 0.12, "stable")), {"": 4000.0}, "x"
+    )
+    text = str(told)
+    assert (
+        "shrinks by 0.02 Cpr in a second towards 0.10 Cpr, where it does not whirl; expected there after 4 to 16 s"
+        in text
+    )
+    assert "with a scatter of 0.2 um (seed 1) the cage whirls (0.90 Cpr); with equal" in text.replace("\n", " ")
+    assert "scatter of 1 um" not in " ".join(told.warnings)
+    assert "the rollers creep within 4e+03 turns" in text.replace("\n", " ")
+    open_one = row(0.0, "unknown", 0.5, "unknown", reason="the rollers creep")
+    said = CageAnswer((open_one, row(1e-6, "agreed", 0.94, "circling")), {"": math.nan}, "x").warnings
+    assert said == (
+        "with rollers with a scatter of 1 um (seed 1) the cage whirls (0.94 Cpr); with equal rollers, which nobody has, it "
+        "cannot be told",
+    )
+
+
+@pytest.mark.slow
+def test_all_starts_come_to_one_motion() -> None:
+    """The answer of three starts is that of a run of its own, five times as long."""
+    scene = trb.cases.scene_30310(6000.0, 4930.0)
+    (one,) = trb.cage_answer(scene, scatter=[0.0]).rows
+    assert one.found.verdict == "agreed"
+    turns = 5.0 * one.turns / scene.bearing.geometry.cage_speed_ratio
+    alone = trb.Simulation(scene.replace(start=trb.Start.equal()), accuracy="fast").run(revolutions=turns)
+    late = alone.window(0.6 * alone.duration)
+    assert late.cage_motion.kind == one.kind
+    assert late.cage_motion.orbit_over_play == pytest.approx(one.found.orbit, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"scatter": []}, "scatter"),
+        ({"scatter": [2e-3]}, "range"),
+        ({"seeds": []}, "seeds"),
+        ({"processor_time": 0.0}, "processor_time"),
+        ({"subject": SCENE.replace(effects=SCENE.effects.replace(bodies="rollers"))}, "rollers_and_cage"),
+        ({"subject": SCENE.replace(speed_rpm=trb.History.ramp(0.0, 0.1, 0.0, 3000.0))}, "constant"),
+        ({"subject": SCENE.replace(speed_rpm=0.0)}, "must not be 0"),
+    ],
+)
+def test_refusals(given: dict[str, Any], words: str) -> None:
+    with pytest.raises(trb.InputError, match=words):
+        trb.cage_answer(**{"subject": SCENE, **given})
