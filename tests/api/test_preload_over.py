@@ -200,7 +200,9 @@ def test_a_range_of_plays_has_its_best_marked() -> None:
     plays = [-100e-6, -20e-6, 60e-6]
     found = trb.preload_range(one, seat, plays[::-1], temperature=40.0)
     assert [row.play for row in found.rows] == plays
-    alone = trb.preload_over(one.replace(bearings=tuple(b.replace(end_play=-10e-6) for b in one.bearings)), seat, [40.0])
+    alone = trb.preload_over(
+        one.replace(bearings=tuple(b.replace(end_play=-10e-6) for b in one.bearings)), seat, [40.0]
+    )
     assert found.rows[1].life_hours == pytest.approx(alone.rows[0].modified_reference_life_hours, rel=1e-9)
     lives = [row.life_hours for row in found.rows]
     assert found.best is not None

@@ -94,7 +94,18 @@ class PreloadRange(Tabled):
                     marked,
                 )
             )
-        head = ("mounted um", "in operation um", "Fa N", "L10h h", "Lnmrh h", "axial N/um", "radial N/um", "torque N m", "ring C", "")
+        head = (
+            "mounted um",
+            "in operation um",
+            "Fa N",
+            "L10h h",
+            "Lnmrh h",
+            "axial N/um",
+            "radial N/um",
+            "torque N m",
+            "ring C",
+            "",
+        )
         notes = tuple(dict.fromkeys(f"{1e6 * row.play:.4g} um: {row.said}" for row in self.rows if row.said))
         if self.best is not None:
             low, high = (1e6 * play for play in self.best)
