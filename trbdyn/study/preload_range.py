@@ -72,7 +72,7 @@ class PreloadRange(Tabled):
     title: str
 
     def _shown(self) -> Shown:
-        rows = []
+        rows: list[tuple[str, ...]] = []
         for row in self.rows:
             marked = "best" if self.best is not None and self.best[0] <= row.play <= self.best[1] else ""
             at = row.found
@@ -117,8 +117,8 @@ class PreloadRange(Tabled):
 
 
 NOTE: Final = (
-    "Negative play is preload. Plays are means over the tolerances; the torque is that of the contacts in ideal rolling. The range "
-    "goes by life alone: stiffness and heat stand beside it."
+    "Negative play is preload. Plays are means over the tolerances; the torque is that of the contacts in ideal rolling. The "
+    "range goes by life alone: stiffness and heat stand beside it."
 )
 
 
