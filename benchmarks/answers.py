@@ -34,7 +34,7 @@ BEARINGS: Final = {
     "32024X": (0.120, 0.180, 0.038, 300.0),
 }
 """Bore, outside diameter and width (m), and speed (rpm)."""
-LOADS: Final = {"light": (0.02, 0.0), "combined": (0.05, 0.10), "heavy": (0.12, 0.0)}
+LOADS: Final = {"light": (0.02, 0.0), "combined": (0.06, 0.08), "heavy": (0.12, 0.0)}
 """Axial and radial load over the dynamic rating."""
 COLUMNS: Final = {
     "question": "text: cage, thermal or slip",
