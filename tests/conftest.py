@@ -88,6 +88,12 @@ def workers(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("trbdyn.study.executors._processes", WORKERS[0])
 
 
+@pytest.fixture(autouse=True)
+def short_checks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The check of a run that a report asks for takes some tenths of a second."""
+    monkeypatch.setattr("trbdyn.run.check.BUDGET_S", 0.1)
+
+
 @pytest.fixture
 def drawn_only(monkeypatch: pytest.MonkeyPatch) -> None:
     """Pictures of reports are drawn, but not made into images, which takes most of a report's time: tests/report does that."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import html
 import re
 from pathlib import Path
@@ -17,10 +16,10 @@ from trbdyn.plot import PICTURES
 from trbdyn.reporting import converter
 from trbdyn.reporting.captions import CAPTIONS
 from trbdyn.reporting.inputs import rows
+from trbdyn.reporting.page import page
 from trbdyn.reporting.verdict import verdict
 from trbdyn.results.numbers import TABLE
-from trbdyn.run import estimate
-from trbdyn.run.bias import Bias, biases
+from trbdyn.run.check import Check, Checked
 
 
 @pytest.fixture(scope="module")
@@ -173,39 +172,20 @@ def test_films_have_one_limit_in_sentences_and_pictures(result: trb.Result) -> N
     assert "above 3" not in " ".join([*(quantity.meaning for quantity in TABLE.values()), *CAPTIONS.values()])
 
 
-def test_the_bias_of_the_accuracy_is_said_where_it_was_measured(usual: trb.Result, tmp_path: Path) -> None:
-    """Each number whose bias stands in the table of accuracy has it in its row, whatever its name."""
-    listed = biases(usual)
-    assert set(listed) <= set(TABLE)
-    assert "pocket_force_p95" in listed
-    text = trb.report(usual, tmp_path / "r.html", pictures=["cage_locus"]).read_text(encoding="utf-8")
-    said = cells(text, TABLE["pocket_force_p95"].words)[-1]
-    assert html.escape(str(listed["pocket_force_p95"])) in said
-    assert str(Bias(-0.08, 0.04, "fast", "")) == "With accuracy 'fast' it is 4 to 12 % too low."
-    assert str(Bias(0.38, 0.08, "fast", "")) == "With accuracy 'fast' it is 30 to 46 % too high."
-    assert str(Bias(-0.02, 0.1, "fast", "")) == "No bias was seen with accuracy 'fast', within 12 %."
-    assert "of Cpr" in str(Bias(0.0045, 0.003, "standard", "", "Cpr"))
-    orbit = listed.get("orbit_rms_over_cpr")
-    assert orbit is None or "of Cpr" in str(orbit)  # the table has it in Cpr
-    own = trb.Simulation(usual.scene, rtol=1e-3).run(revolutions=0.1)
-    assert biases(own) == {}  # tolerances of one's own: nothing was measured for them
-
-
-def test_the_bias_of_peaks_has_its_place(usual: trb.Result, monkeypatch: pytest.MonkeyPatch) -> None:
-    table = copy.deepcopy(dict(estimate.table()))
-    for case in table["presets_of_scenes"].values():
-        case["standard"]["bias"] |= {"bias_pocket_peak": -0.075, "bias_pocket_peak_half_width": 0.045}
-        case["standard"]["bias"] |= {
-            "bias_rib_pressure_max": -0.02,
-            "bias_rib_pressure_max_half_width": 0.01,
-            "bias_new": 1.0,
-        }
-    monkeypatch.setattr(estimate, "table", lambda: table)
-    assert str(biases(usual)["pocket_force_peak"]) == "With accuracy 'standard' it is 3 to 12 % too low."
-    assert str(biases(usual)["rib_pressure_max"]).endswith("1 to 3 % too low.")
-    assert "new" not in biases(usual)
-    hits = {head: text for _, head, text in verdict(usual, usual.summary())}["Hits on the cage so far"]
-    assert "3 to 12 % too low" in hits
+def test_what_the_check_of_the_run_found_stands_beside_each_number(result: trb.Result, tmp_path: Path) -> None:
+    checked = [
+        Check({"torque": Checked(-0.2, 0.01, 0.001, "biased")}, 1, 1.0, 0.1, "How it was done.", {"torque": "torque"})
+    ]
+    text = page([result], ["first"], "", ["cage_locus"], (), checked)
+    assert "By the check of the run: 19 to 21 % too low by the tolerances of the run." in text
+    assert "Not known to be right within 3 %: torque: 19 to 21 % too low" in text
+    assert "How it was done." in text
+    measured = trb.report(result, tmp_path / "r.html", pictures=["cage_locus"]).read_text(encoding="utf-8")
+    assert "By the check of the run: " in measured
+    without = trb.report(result, tmp_path / "w.html", pictures=["cage_locus"], check_budget_s=0).read_text(
+        encoding="utf-8"
+    )
+    assert "check of the run" not in without
 
 
 def test_the_verdict_judges_the_life_by_the_shortest(result: trb.Result) -> None:

@@ -34,6 +34,7 @@ def report(
     title: str = "",
     pictures: Sequence[str] | None = None,
     tables: Sequence[Displayed] = (),
+    check_budget_s: float | None = None,
     pdf: bool = False,
     overwrite: bool = False,
 ) -> Path:
@@ -59,6 +60,9 @@ def report(
         allow.
     tables : sequence
         Further tables to show below, as those of `trbdyn.fit`, `trbdyn.preload_over` and `trbdyn.least_load`.
+    check_budget_s : float, optional
+        Processor time for the check of each run (`trbdyn.check`), which says what tolerances do to its numbers (s); by default
+        2 s or a tenth of that of the run. 0: no check.
     pdf : bool
         Also write a PDF beside it; needs Chromium.
     overwrite : bool
@@ -87,6 +91,7 @@ def report(
     from trbdyn.plot import PICTURES
     from trbdyn.plot.assembly import of_result
     from trbdyn.reporting.page import page
+    from trbdyn.run.check import check
 
     expect("result", result, Result, AssemblyResult)
     known = {*PICTURES, *of_result(result)}
@@ -111,7 +116,9 @@ def report(
             else "must be a run of one bearing, as the first is"
         )
         raise InputError.of("other", ", ".join(bearings[-1]) or "one bearing", limit)
-    text = page(results, list(names[: len(results)]), title, pictures, shown)
+    checked = check_budget_s != 0.0 and all(one.time.size > 1 for one in results)
+    checks = [check(one, budget_s=check_budget_s) for one in results] if checked else ()
+    text = page(results, list(names[: len(results)]), title, pictures, shown, checks)
     written = write_whole(path, text, endings=HTML, **how)
     if pdf:
         save_pdf(written, written.with_suffix(".pdf"), overwrite=overwrite)

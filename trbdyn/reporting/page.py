@@ -21,7 +21,7 @@ from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.numbers import drawn_of, of_picture
 from trbdyn.results.result import Result
 from trbdyn.results.rows.ratings import RATINGS, of_sheet
-from trbdyn.run.bias import biases
+from trbdyn.run.check import Check
 from trbdyn.standards.sheet import Rating
 
 if TYPE_CHECKING:
@@ -42,16 +42,18 @@ def page(
     title: str,
     pictures: Sequence[str] | None,
     shown: Sequence[Shown] = (),
+    checks: Sequence[Check] = (),
 ) -> str:
     """The HTML of the report of one run or of two, of one bearing or of several on a shaft, with further tables below.
 
     Of a shaft: what the bearings share, then each bearing as in a report of its own.
     """
     bearings = list(results[0].by_name)
+    checks = checks or [Check({}) for _ in results]
     if bearings == [""]:
         of_one = [result.parts[0] for result in results]
         heading = title or f"Report: {' and '.join(dict.fromkeys(run.scene.bearing.name for run in of_one))}"
-        return _whole(heading, _body(of_one, names, heading, pictures) + tables.further(shown))
+        return _whole(heading, _body(of_one, names, heading, pictures, "", checks) + tables.further(shown))
     heading = title or f"Report: {', '.join(bearings)} on one shaft"
     parts = [f"<h1>{safe(heading)}</h1>"]
     for result, name in zip(results, names, strict=True):
@@ -60,7 +62,9 @@ def page(
     of_bearings = None if pictures is None else [name for name in pictures if name not in own]
     for bearing in bearings:
         of_one = [result.by_name[bearing] for result in results]
-        parts.append(_body(of_one, names if len(results) > 1 else [bearing], f"Bearing {bearing}", of_bearings))
+        parts.append(
+            _body(of_one, names if len(results) > 1 else [bearing], f"Bearing {bearing}", of_bearings, bearing, checks)
+        )
     return _whole(heading, "\n".join(parts) + tables.further(shown))
 
 
@@ -89,13 +93,23 @@ def _card(sentence: Sentence) -> str:
     return f"<div class='card {grade}'><span class='grade'>{GRADES[grade]}</span><b>{safe(head)}</b>{safe(text)}</div>"
 
 
-def _body(results: Sequence[Result], names: Sequence[str], title: str, pictures: Sequence[str] | None) -> str:
+def _body(
+    results: Sequence[Result],
+    names: Sequence[str],
+    title: str,
+    pictures: Sequence[str] | None,
+    bearing: str,
+    checks: Sequence[Check],
+) -> str:
+    """One bearing of each run; `bearing` is its name on a shaft."""
     numbers = [result.summary() for result in results]
     sheets = [sheet_of(result) for result in results]
     inputs = [rows(result.scene) for result in results]
     judged = [
-        _verdict(result, _with_lives(values, sheet), listed, name if len(results) > 1 else "")
-        for result, values, sheet, listed, name in zip(results, numbers, sheets, inputs, names, strict=True)
+        _verdict(result, _with_lives(values, sheet), listed, name if len(results) > 1 else "", check)
+        for result, values, sheet, listed, name, check in zip(
+            results, numbers, sheets, inputs, names, checks, strict=True
+        )
     ]
     parts = [_head(results, names, title)]
     if len(results) > 1:
@@ -113,7 +127,7 @@ def _body(results: Sequence[Result], names: Sequence[str], title: str, pictures:
     parts.append(_simulated(results, names))
     parts.append(_pictures(results, numbers, names, pictures))
     parts.append("<h2>Details</h2>")
-    parts.append(tables.numbers(numbers, names, [biases(result) for result in results]))
+    parts.append(tables.numbers(numbers, names, [check.of(bearing) for check in checks]))
     parts.append(ratings_section(sheets, names))
     parts.append(frequencies_section(results, numbers, names))
     parts.append(tables.inputs(inputs, names))
@@ -153,10 +167,12 @@ def _head(results: Sequence[Result], names: Sequence[str], title: str) -> str:
     return f"<h1>{safe(title)}</h1>\n<p class='sub'>{'<br>'.join(lines)}</p>"
 
 
-def _verdict(result: Result, numbers: dict[str, Any], listed: list[Row], name: str) -> str:
+def _verdict(result: Result, numbers: dict[str, Any], listed: list[Row], name: str, check: Check) -> str:
     cards = "".join(_card(sentence) for sentence in verdict(result, numbers))
     estimated, assumed = (sum(row.mark == mark for row in listed) for mark in ("estimated", "assumed"))
-    notes = "".join(f"<li>{safe(text)}</li>" for text in warnings(result, numbers, estimated, assumed))
+    notes = "".join(
+        f"<li>{safe(text)}</li>" for text in [*warnings(result, numbers, estimated, assumed), *check.said()]
+    )
     of = f" of {safe(name)}" if name else ""
     return f"<h2>Verdict{of}</h2>\n<div class='cards'>{cards}</div>" + (
         f"\n<h3>Before you rely on it</h3><ul class='warnings'>{notes}</ul>"

@@ -15,7 +15,7 @@ from trbdyn.base.shown import Shown
 from trbdyn.reporting.inputs import Row
 from trbdyn.results.number import Number
 from trbdyn.results.numbers import rows
-from trbdyn.run.bias import Bias
+from trbdyn.run.check import Checked
 from trbdyn.standards.sheet import life_text
 
 SENTENCES: Final = ("_note", "_reason")
@@ -143,8 +143,10 @@ def _columns(names: Sequence[str]) -> tuple[str, ...]:
     return (*names, "difference") if len(names) > 1 else ("value",)
 
 
-def numbers(summaries: Sequence[Mapping[str, Any]], names: Sequence[str], biases: Sequence[Mapping[str, Bias]]) -> str:
-    """Every number of the summaries with its interval, unit and meaning; below them the notes."""
+def numbers(
+    summaries: Sequence[Mapping[str, Any]], names: Sequence[str], checks: Sequence[Mapping[str, Checked]]
+) -> str:
+    """Every number of the summaries with its interval, unit, meaning and what the check of its run says; then the notes."""
     body: list[str] = []
     notes: list[str] = []
     for row in rows():
@@ -160,9 +162,7 @@ def numbers(summaries: Sequence[Mapping[str, Any]], names: Sequence[str], biases
             body += _parts(words, unit, values)
         else:
             widths = [(entry.get("confidence") or {}).get(key) for entry in summaries]
-            body.append(_number(words, unit, values, widths, row.meaning, _said(key, values, biases, names)))
-    measured = dict.fromkeys(bias.measured for listed in biases for bias in listed.values())
-    notes += [f"<dt>What the integration's accuracy does to numbers</dt><dd>{safe(text)}</dd>" for text in measured]
+            body.append(_number(words, unit, values, widths, row.meaning, _said(key, values, checks, names)))
     heads = _heads("quantity", *_columns(names), "unit", "what it means")
     listed = f"<dl class='notes'>{''.join(notes)}</dl>" if notes else ""
     return f"<details><summary>All numbers and what they mean</summary><table>{heads}{''.join(body)}</table>{listed}</details>"
@@ -178,14 +178,14 @@ def _notes(words: str, values: Sequence[Any], names: Sequence[str]) -> list[str]
     return [f"<dt>{safe(head)}</dt>"] + [f"<dd>{text}</dd>" for text in said]
 
 
-def _said(key: str, values: Sequence[Any], biases: Sequence[Mapping[str, Bias]], names: Sequence[str]) -> list[str]:
+def _said(key: str, values: Sequence[Any], checks: Sequence[Mapping[str, Checked]], names: Sequence[str]) -> list[str]:
     """What the accuracy of each run does to this number."""
     found = [
         (name, listed[key])
-        for name, listed, value in zip(names, biases, values, strict=True)
+        for name, listed, value in zip(names, checks, values, strict=True)
         if key in listed and value is not None
     ]
-    return [(f"{name}: " if len(values) > 1 else "") + str(bias) for name, bias in found]
+    return [f"By the check of {name if len(values) > 1 else 'the run'}: {one}." for name, one in found]
 
 
 def _parts(words: str, unit: str, values: Sequence[Any]) -> list[str]:

@@ -19,7 +19,6 @@ from trbdyn.results.fields import contacts
 from trbdyn.results.result import Result
 from trbdyn.results.rows.losses import NOT_LOST
 from trbdyn.run import estimate
-from trbdyn.run.bias import biases, preset_of
 from trbdyn.run.contact_pressure import edge_warnings
 from trbdyn.run.torque_laws import straight_rollers, torque_laws
 from trbdyn.standards.sheet import life_text
@@ -336,14 +335,8 @@ def _hits(result: Result, numbers: dict[str, Any]) -> Sentence | None:
         "good" if settled and _soft(numbers) else "plain",
         f"Hits on the cage{so_far}",
         f"The hardest force between a roller and its pocket{so_far} is {peak:.3g} N{_at(numbers, 'pocket_force_peak')}, "
-        f"{compared}{usual}.{often}{_bias(result, 'pocket_force_peak')}{band}",
+        f"{compared}{usual}.{often}{band}",
     )
-
-
-def _bias(result: Result, name: str) -> str:
-    """What the accuracy does to a number, with a space before it; empty where it was not measured."""
-    found = biases(result).get(name)
-    return "" if found is None else f" {found}"
 
 
 def _within(numbers: dict[str, Any], name: str) -> str:
@@ -492,7 +485,7 @@ def _of_energy(closure: float) -> Sentence | None:
 
 
 def _exactness(result: Result, numbers: dict[str, Any]) -> Sentence | None:
-    preset = preset_of(result)
+    preset = estimate.preset_of(result)
     if preset is None:
         return (
             "plain",

@@ -40,10 +40,8 @@ BUDGET_SHARE: Final = 0.1
 SLOW: Final = "orbit of the cage, spacing of the rollers and settling: their memory is longer than a check"
 
 
-NOTHING: Final = (
-    "Nothing was checked: a bearing on a shaft is repeated with the others, by the result of all of them, and what was made from "
-    "seats in place of an assembly cannot be made again."
-)
+NOTHING: Final = "Nothing was checked: "
+"""How the note begins of a run that cannot be repeated."""
 
 
 @dataclass(frozen=True)
@@ -117,6 +115,17 @@ class Check(Displayed):
         found = {one.answer for one in self.numbers.values()}
         return next((answer for answer in ("biased", "unsettled", "clear") if answer in found), "unknown")
 
+    def of(self, bearing: str) -> dict[str, Checked]:
+        """What was found of a bearing on a shaft, or of the only one by the name ''."""
+        before = f"{bearing}_" if bearing else ""
+        return {name.removeprefix(before): one for name, one in self.numbers.items() if name.startswith(before)}
+
+    def said(self) -> list[str]:
+        """For a reader of the numbers: those that are not known to be right, and what was done; nothing of no check."""
+        doubted = "; ".join(self.doubts())
+        known = f"Not known to be right within {100.0 * CLEAR:.2g} %: {doubted}." if doubted else ""
+        return [text for text in (known, self.note) if text]
+
     def doubts(self) -> list[str]:
         """A sentence for each number that is not known to be right within `CLEAR`."""
         return [f"{self.words.get(name, name)}: {one}" for name, one in self.numbers.items() if one.answer != "clear"]
@@ -155,7 +164,8 @@ def check(result: Result | AssemblyResult, *, budget_s: float | None = None) -> 
 
     Notes
     -----
-    Pieces of a run of bearings on a shaft begin at its start alone; what follows is not checked, and the note says so.
+    Pieces of a run of bearings on a shaft, or of one that did not keep the motion of its bodies, begin at its start alone; what
+    follows is not checked, and the note says so.
 
     Examples
     --------
@@ -188,14 +198,14 @@ class _Checking:
 
     def go(self) -> Check:
         repeating = self.repeating
-        if repeating.subject is None:
-            return Check({}, note=NOTHING)
+        if repeating.why_not:
+            return Check({}, note=f"{NOTHING}{repeating.why_not}.")
         cost = repeating.cost_per_second * (1.0 + DEARER)
         length = repeating.length
         self.whole = cost * length <= self.budget
         if self.whole:
             samples = self._again(repeating.whole)
-        elif len(repeating.parts) > 1:
+        elif not repeating.has_states:
             samples = self._again(next(pieces(repeating, self.budget / cost)))
         else:
             samples = self._each(pieces(repeating, self.budget / cost))
@@ -246,7 +256,7 @@ class _Checking:
             return "Nothing could be checked: the repetitions with tighter tolerances did not come to their end."
         if self.whole:
             what = f"the whole run was repeated, {_times(len(samples[0].tight))}"
-        elif len(samples) == 1 and len(self.repeating.parts) > 1:
+        elif not self.repeating.has_states:
             what = f"the first {100.0 * covered:.2g} % of the run were repeated, {_times(len(samples[0].tight))}"
         else:
             what = f"{len(samples)} pieces, {100.0 * covered:.2g} % of the run, were repeated, each from a state of the run"

@@ -23,6 +23,7 @@ from trbdyn.run.process import has_a_spare_core
 
 if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
+    from trbdyn.results.result import Result
     from trbdyn.run.options import RunOptions
     from trbdyn.run.simulation import Simulation
 
@@ -386,3 +387,12 @@ def _between(scale: float, scales: Sequence[float], values: Sequence[float]) -> 
     """Straight lines in log-log; constant beyond the ends. Errors are made to grow with the tolerance."""
     grown = np.maximum.accumulate(np.maximum(values, 1e-12))
     return float(np.exp(np.interp(math.log(scale), np.log(scales), np.log(grown))))
+
+
+def preset_of(result: Result) -> str | None:
+    """The preset with whose tolerances a run was made; None for tolerances or an integrator of one's own."""
+    settings: Mapping[str, Any] = result.meta.get("settings") or {}
+    own = [name for name in ("rtol", "atol_position", "atol_angle", "atol_velocity", "atol_spin") if settings.get(name)]
+    preset = settings.get("accuracy")
+    known = preset in table()["presets"] and not own and settings.get("integrator") == "bdf"
+    return str(preset) if known else None

@@ -82,11 +82,28 @@ class Repeating:
         self._every = float(np.median(np.diff(self.time)))
         self._replay: Replay | None = None
         has_motion = set(NEEDED) <= set(self.first.groups)
+        moving = {"ring": self.first.ring_moves, "housing": self.first.housing_moves}
+        needed = {*NEEDED, *(group for group, moves in moving.items() if moves)}
+        self.has_states = len(self.parts) == 1 and needed <= set(self.first.groups)
+        """Whether a piece may begin at any record."""
         self.window = self.first.settling().time if has_motion else float(self.time[0])
         """Begin of the averages of the run (s)."""
         self.whole = Piece(0, float(self.time[0]), float(self.time[0]), float(self.time[-1]))
         self.values = self._numbers(self.parts, self.whole.since, self.window)
         self._random = np.random.default_rng(20)
+
+    @property
+    def why_not(self) -> str:
+        """Why the run cannot be repeated; empty where it can."""
+        if self.subject is None:
+            return "a bearing on a shaft is repeated with the others, by the result of all of them, and not from seats alone"
+        elastic = [part.scene.elastic_cage for part in self.parts.values()]
+        if any(one is not None and one.file for one in elastic) or any(
+            one is not None and part.scene.bearing.cage.drawing is not None
+            for one, part in zip(elastic, self.parts.values(), strict=True)
+        ):
+            return "the modes of its cage come from another file, which the check of a result does not open"
+        return ""
 
     @property
     def length(self) -> float:
@@ -163,9 +180,9 @@ def pieces(run: Repeating, most: float) -> Iterator[Piece]:
     begin, end = run.whole.begin, run.whole.until
     speed = float(np.abs(run.first.turning_speed).mean())
     turn = 2.0 * math.pi / speed if speed > 0.0 else run.length / STRATA
-    length = min(max(turn, 2.0 * LEFT_OUT), most if len(run.parts) > 1 else most / 3.0, run.length)
+    length = min(max(turn, 2.0 * LEFT_OUT), most / 3.0 if run.has_states else most, run.length)
     yield _piece(run, begin, begin, begin + length)
-    if len(run.parts) > 1:
+    if not run.has_states:
         return
     for first, last in _jumps(run):
         yield _piece(run, first - LEFT_OUT, first - LEFT_OUT, last + AFTER_JUMP * turn)

@@ -27,7 +27,7 @@ from trbdyn.results import peaks as peak_table
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.file_format import RunInfo, reason
 from trbdyn.results.result import Result
-from trbdyn.run import bias, checkpoint, keeping
+from trbdyn.run import checkpoint, keeping
 from trbdyn.run.checkpoint import Checkpoint
 from trbdyn.run.faults import check_apart, culprit
 from trbdyn.run.keeping import absent, there
@@ -120,7 +120,6 @@ class Run:
         self.bearings: list[RunningBearing] = []
         for bearing in sim.bearings:
             self._add(bearing)
-        self.accuracy_note = bias.note(sim)
 
     def _add(self, bearing: SeatedBearing) -> None:
         options, model, fields = self.options, bearing.model, field_table.table()
@@ -381,7 +380,6 @@ class Run:
             "settings": settings,
             "kept": keeping.said(self.options.save_every or 0.0, self.options.save_groups),
             "notes": bearing.notes,
-            "accuracy": self.accuracy_note,
         }
         if bearing.of.seat is not None:
             names = [one.name for one in self.sim.bearings]

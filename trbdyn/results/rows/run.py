@@ -271,15 +271,6 @@ SAID: Final = (
         groups=("time",),
     ),
     Number(
-        "accuracy_note",
-        "About the accuracy",
-        "",
-        "What the tolerances of the run do to peaks, percentiles and contact times, as measured on a like scene.",
-        lambda seen: seen.run.meta.get("accuracy") or None,
-        "words",
-        "run",
-    ),
-    Number(
         "confidence",
         "half width of the 95 % confidence interval",
         "",
