@@ -74,27 +74,28 @@ class Influence:
         self.shape, self.cell = shape, cell
         # y is the first axis: the transform of real numbers, which takes half, goes along x
         self._size = scipy.fft.next_fast_len(2 * m), scipy.fft.next_fast_len(2 * n, real=True)
-        kernel = self._kernel(np.arange(float(m)), compliance)
+        kernel = self._kernel(np.arange(m + 1.0) - 0.5, compliance)
         self._direct = self._spread(self._placed(np.arange(m), kernel))
         self.row_stiffness = np.linalg.inv(kernel[:, 0][np.abs(np.subtract.outer(np.arange(n), np.arange(n)))])
         self._mirror: NDArray[np.complex128] | None = None
         if mirrored > 0.0:
             # of cells i and j, the image at one end is (j - k) - m away and that at the other (j - k) + m, with k = m - 1 - i
             shift = 2.0 * beyond / cell[1]
-            distance = np.arange(1.0 - m, m)
-            images = sum(self._kernel(np.abs(distance + side * (m + shift)), mirrored) for side in (-1.0, 1.0))
+            images = self._kernel(np.arange(2.0 * m) + 0.5 + shift, mirrored)
+            images += images[:, ::-1]
             placed = np.zeros((self._size[0], n))
-            placed[np.arange(1 - m, m)] = np.asarray(images).T
+            placed[np.arange(1 - m, m)] = images.T
             turned = np.exp(-2j * np.pi * np.arange(self._size[0]) * (m - 1) / self._size[0])
             self._mirror = self._spread(placed) * turned[:, None]
             self._back = -np.arange(self._size[0])
 
-    def _kernel(self, distances: NDArray[np.floating], compliance: float) -> Array:
-        """Displacement at 0 to n - 1 cells across and at distances along, in cells, shape (n, len(distances))."""
+    def _kernel(self, edges: NDArray[np.floating], compliance: float) -> Array:
+        """Displacement at 0 to n - 1 cells across and between edges along, in cells and one apart, shape (n, len(edges) - 1)."""
         wide, long = self.cell
         x = wide * (np.arange(self.shape[0] + 1) - 0.5)
-        both: Array = _corner(x, long * (distances + 0.5)) - _corner(x, long * (distances - 0.5))
-        return compliance / math.pi * np.asarray(both[1:] - both[:-1])
+        corners: Array = _corner(x, long * edges)
+        both = corners[1:] - corners[:-1]
+        return compliance / math.pi * np.asarray(both[:, 1:] - both[:, :-1])
 
     def _placed(self, distances: NDArray[np.int64], kernel: Array) -> Array:
         placed = np.zeros((self._size[0], self.shape[0]))
