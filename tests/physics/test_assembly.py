@@ -320,3 +320,23 @@ def test_elastic_cages_on_one_shaft() -> None:
         assert np.abs(one["cage_mode"]).max() > 1e-8
         assert one["loss_vibration"][-1] > 0.0
         assert one.energy_closure < 1e-3
+
+
+def test_a_blow_in_the_first_half_counts_in_the_lives_of_a_pair() -> None:
+    """30 kN across for 1 ms in 5 ms: lives and static safety are those of the whole run, by Miner over the recorded loads."""
+    blow = trb.History.step((0.001, 0.0015), (0.0, -30e3, 0.0), rise=4e-4)
+    quiet = trb.load_assembly("pair_30310")
+    struck = quiet.replace(loads=(*quiet.loads, trb.ShaftLoad(position=0.0, force=(0.0, blow, 0.0))))
+    result = trb.Simulation(struck).run(duration=5e-3)
+    found = trb.rating(result)
+    for name, sheet in found.bearings.items():
+        axial, radial = (np.abs(one) for one in result[name].ring_loads)
+        loads = np.where(axial <= sheet.e * radial, radial, 0.4 * radial + sheet.Y * axial)
+        turns = np.gradient(result[name].time)
+        turns[[0, -1]] *= 0.5
+        mean = np.average(loads ** (10.0 / 3.0), weights=turns) ** 0.3
+        assert sheet.equivalent_load == pytest.approx(mean, rel=0.01)
+        assert sheet.static_equivalent_load == pytest.approx(
+            max(np.maximum(radial, 0.5 * radial + sheet.Y0 * axial)), rel=1e-6
+        )
+        assert "the whole run" in sheet.notes["life"]

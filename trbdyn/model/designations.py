@@ -183,7 +183,7 @@ def designations(table: str | Path | None = None) -> dict[str, Designation]:
     >>> import trbdyn as trb
     >>> sizes = trb.designations()
     >>> sorted(name for name, row in sizes.items() if row.bore == 0.040 and row.outside == 0.080)
-    ['30208', '32208', '33208', 'NU2208E', 'NU208E']
+    ['30208', '32208', '33208', 'NU208E', 'NU2208E']
     """
     if table is not None:
         return dict(_rows(file_path(table, "table")))
