@@ -294,6 +294,8 @@ def load_case(name: str, path: Path = FILE) -> Case:
         scene = json.loads(str(data[f"{name}_scene"]))
         scene["effects"].setdefault("rolling_law", STORED_LAW)
         scene["effects"].setdefault("thermal_law", "gupta")
+        scene["effects"].setdefault("rolling_load", "slices")
+        scene["effects"].setdefault("supply", 1.0)
         states = tuple(
             State(float(time), vector)
             for time, vector in zip(data[f"{name}_time"], data[f"{name}_vector"], strict=True)

@@ -1,11 +1,15 @@
 """Film and pressure of a lubricated line contact in pure rolling, solved numerically: a reference that no fitted law enters.
 
-Reynolds' equation without heat, with the viscosity of Barus and the density of Dowson and Higginson, and the elastic half
+Reynolds' equation with the viscosity of Barus or of Roelands and the density of Dowson and Higginson, and the elastic half
 space, in Hertz's scales: X = x/b, P = p/p_max, H = h Re/b^2. Finite volumes: the flow at a face is that of the pressure's slope
 less that of the surfaces, whose film is taken from upwind to second order; where the flow cannot fill the gap behind the
 contact, the pressure is zero (complementarity). One Newton system holds the pressures and the approach of the bodies, with the
 exact matrix of a pressure that is linear between nodes; a path from a small to the full pressure coefficient leads to the
 solution.
+
+Oil may end at a meniscus before the contact. Heat of the inlet: oil is sheared across the film, and the heat goes into both
+surfaces, which keep their temperature (conduction alone, as Murch and Wilson 1975). With the parabolic flow of the pressure's
+slope the mean rise is 0.6 eta u^2 (1 - h*/h)^2/k', and the viscosity falls by exp(-theta) with theta = beta times this rise.
 """
 
 from __future__ import annotations
@@ -14,6 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import lambertw
 
 Array = NDArray[np.float64]
 
@@ -51,7 +56,16 @@ class NoSolution(RuntimeError):
     """Newton's method found none."""
 
 
-def solve(w: float, u: float, g: float, nodes: int = 150) -> LineContact:
+def solve(
+    w: float,
+    u: float,
+    g: float,
+    nodes: int = 150,
+    *,
+    viscosity: float | None = None,
+    heat: float = 0.0,
+    meniscus: float | None = None,
+) -> LineContact:
     """Solve a line contact.
 
     Parameters
@@ -60,6 +74,12 @@ def solve(w: float, u: float, g: float, nodes: int = 150) -> LineContact:
         The groups W = w/(E' Re), U = eta0 u/(E' Re) with the mean speed u, and G = alpha0 E'.
     nodes : int
         Evenly spaced nodes across the contact.
+    viscosity : float, optional
+        eta0 (Pa s) for the law of Roelands; that of Barus otherwise.
+    heat : float
+        L = eta0 beta u^2/k' of the mean speed (1); 0: no heat.
+    meniscus : float, optional
+        Where the oil begins before the contact's centre, in half widths; far away otherwise.
 
     Returns
     -------
@@ -70,7 +90,7 @@ def solve(w: float, u: float, g: float, nodes: int = 150) -> LineContact:
     NoSolution
         If Newton's method does not converge.
     """
-    system = _System(w, u, nodes)
+    system = _System(w, u, nodes, viscosity, meniscus)
     last = g * system.peak
     pressure, approach = system.start(2.922 * w**-0.166 * u**0.692 * g**0.470)
     alpha, step, order = min(0.5, last), 0.3, 0.0
@@ -89,17 +109,28 @@ def solve(w: float, u: float, g: float, nodes: int = 150) -> LineContact:
             step *= 0.5
     if state is None:
         raise NoSolution(f"no solution at W {w:g}, U {u:g}, G {g:g}")
+    for _ in range(60 if heat else 0):
+        warmer = system.warmed(*state, last, heat)
+        change = float(np.max(np.abs(warmer - system.theta)))
+        system.theta += 0.7 * (warmer - system.theta)
+        state = system.newton(*state, last, 1.0, 60)
+        if state is None:
+            raise NoSolution(f"no solution at W {w:g}, U {u:g}, G {g:g}, L {heat:g}")
+        if change < 1e-4:
+            break
     return system.found(*state)
 
 
 class _System:
-    def __init__(self, w: float, u: float, nodes: int) -> None:
-        self.speed = u
+    def __init__(self, w: float, u: float, nodes: int, viscosity: float | None, meniscus: float | None) -> None:
+        self.speed, self.meniscus = u, meniscus
+        self.roelands = None if viscosity is None else float(np.log(viscosity) + 9.67)
         self.half = float(np.sqrt(8.0 * w / np.pi))
         self.peak = 2.0 * w / (np.pi * self.half)
         self.flow = 12.0 * u / (self.half**3 * self.peak)
-        x = self.x = _grid(nodes, max(8.0, 60.0 * np.sqrt(2.0 * u) / w))
+        x = self.x = _grid(nodes, max(8.0, 60.0 * np.sqrt(2.0 * u) / w) if meniscus is None else meniscus)
         n, dx = len(x), np.diff(x)
+        self.theta = np.zeros(n - 1)
         self.kernel, self.gap = _kernel(x), 0.5 * x * x
         self.weight = np.zeros(n)
         self.weight[:-1] += 0.5 * dx
@@ -124,6 +155,23 @@ class _System:
         slope = 0.6e-9 / (1.0 + 1.7e-9 * p) ** 2 * self.peak * MODULUS
         return 1.0 + 0.6e-9 * p / (1.0 + 1.7e-9 * p), np.where(pressure > 0.0, slope, 0.0)
 
+    def exponent(self, pressure: Array, alpha: float) -> tuple[Array, Array]:
+        """ln(eta/eta0) and its slope; alpha is that of the scaled pressure."""
+        if self.roelands is None:
+            return alpha * pressure, np.full_like(pressure, alpha)
+        scale = 5.1e-9 * self.peak * MODULUS
+        z = alpha / (scale * self.roelands)
+        return self.roelands * ((1.0 + scale * pressure) ** z - 1.0), alpha * (1.0 + scale * pressure) ** (z - 1.0)
+
+    def warmed(self, pressure: Array, approach: float, alpha: float, heat: float) -> Array:
+        """theta at each face from the flow that the pressure drives."""
+        film = np.maximum(self.mean @ (approach + self.gap + self.kernel @ pressure), 1e-7)
+        exponent, _ = self.exponent(self.mean @ np.maximum(pressure, 0.0), alpha)
+        driven = film**2 / self.flow * (self.slope @ pressure)
+        # theta exp(theta) = 0.6 L exp(exponent) (1 - h*/h)^2, and 1 - h*/h = driven exp(theta - exponent)
+        found: Array = np.real(lambertw(0.6 * heat * np.exp(2.0 * self.theta - exponent) * driven**2))
+        return found
+
     def newton(
         self, pressure: Array, approach: float, alpha: float, order: float, most: int
     ) -> tuple[Array, float] | None:
@@ -135,10 +183,11 @@ class _System:
             film, carries = np.maximum(self.mean @ height, 1e-7), (pressure > 0.0).astype(float)
             rho, rho_slope = self.density(pressure)
             rho_face = self.mean @ rho
-            ease = rho_face * film**3 / self.flow * np.exp(-alpha * (self.mean @ np.maximum(pressure, 0.0)))
+            exponent, steeper = self.exponent(self.mean @ np.maximum(pressure, 0.0), alpha)
+            ease = rho_face * film**3 / self.flow * np.exp(self.theta - exponent)
             driven = ease * (self.slope @ pressure)
             by_pressure = ease[:, None] * self.slope + self.mean * (
-                (driven / rho_face)[:, None] * rho_slope - alpha * driven[:, None] * carries
+                (driven / rho_face)[:, None] * rho_slope - (steeper * driven)[:, None] * carries
             )
             flow = driven - upwind @ (rho * height)
             to_height = 3.0 * driven / film
@@ -179,7 +228,9 @@ class _System:
         pressure = np.maximum(pressure, 0.0)
         height = (approach + self.gap + self.kernel @ pressure) * self.half**2
         # beyond the first node the gap is x^2/2 and the oil has no pressure to speak of: 6 U times the integral of 1/h
-        beyond = 12.0 * self.speed / (-self.x[0] * self.half)
+        beyond = 12.0 * self.speed / (-self.x[0] * self.half) * float(np.exp(-self.theta[0]))
+        if self.meniscus is not None:
+            beyond = 0.0
         slope = 0.5 * self.peak * float(np.sum((self.mean @ height) * np.diff(pressure)))
         moment = -0.5 * self.peak * self.half**2 * float(self.weight @ (self.x * pressure))
         centre = float(height[np.argmin(np.abs(self.x))])

@@ -119,6 +119,7 @@
   X(oil,        shear_modulus_floor,       "Pa",        1,      1e10,   "smallest limiting shear modulus Ginf") \
   X(oil,        oil_density,               "kg/m3",     1,      3000,   "density of the oil") \
   X(effects,    starvation_factor,         "1",         1e-4,   1,      "factor of every film thickness and of rolling resistance") \
+  X(effects,    supply,                    "1",         0,      1,      "share of rolling resistance on raceways that the supply of oil leaves") \
   X(effects,    replenishment,             "s/rad",     0,      1,      "decline of the supply of raceways with the speed of the rings: factor exp(-c speed) of their rolling resistance") \
   X(effects,    oil_height,                "m",         0,      1,      "height of the oil before the contacts on raceways; 0: they are flooded") \
   X(effects,    flooded_gaps,              "choice",    0,      1,      "1: gaps beside the loaded part of a contact are full of oil") \
@@ -154,7 +155,8 @@
   X(effects,    traction,                  "choice",    0,      2,      "film traction: 0 none, 1 Coulomb, 2 Muraki-Kimura") \
   X(effects,    thermal,                   "choice",    0,      2,      "thermal reduction of films: 0 off, 1 Gupta, 2 Aihara") \
   X(effects,    mixed_law,                 "choice",    0,      1,      "share of boundary friction: 0 the sixth power (2), 1 exp(-B Lambda^C)") \
-  X(effects,    rolling_resistance,        "choice",    0,      5,      "EHL rolling resistance: 0 off, 1 Zhou-Hoeprich, 2 Goksem-Hargreaves, 3 Aihara, 4 Matsuyama, 5 Biboulet-Houpert") \
+  X(effects,    rolling_resistance,        "choice",    0,      6,      "EHL rolling resistance: 0 off, 1 Zhou-Hoeprich, 2 Goksem-Hargreaves, 3 Aihara, 4 Matsuyama, 5 Biboulet-Houpert, 6 numerical solutions of the line") \
+  X(effects,    rolling_load,              "choice",    0,      1,      "load of the law of rolling resistance: 0 of each slice, 1 of the whole contact over the roller's length") \
   X(effects,    rolling_pressure_force,    "choice",    0,      1,      "pressure force of the rolling film on the roller") \
   X(effects,    back_rib,                  "choice",    0,      1,      "large end against the back-face rib") \
   X(effects,    front_rib,                 "choice",    0,      1,      "small end against the front rib") \

@@ -25,6 +25,7 @@ enum { TRB_TILE_LANES = 256, TRB_TILE_FILL = 64, TRB_LANE_STRIDE = TRB_TILE_LANE
   X(weight,         "m",   "quadrature weight along the contact") \
   X(rolled,         "m",   "length of the node's cell that has rolling resistance") \
   X(rolled_log_d,   "1",   "logarithm of the interference in this length") \
+  X(supplied,       "1",   "share of rolling resistance that the supply of oil leaves") \
   X(radius,         "m",   "equivalent radius") \
   X(log_radius,     "1",   "its logarithm") \
   X(roller_share,   "1",   "share of the roller in the pair's curvature") \

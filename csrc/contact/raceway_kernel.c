@@ -109,12 +109,31 @@ static void pass_film(const trb_model *m, int n, trb_lanes *l)
 /* Interference from which on a contact has rolling resistance, m. The powers set in with h_PE/h_IR, the other law with the load. */
 static double rolling_level(const trb_model *m, int first, const trb_lanes *l)
 {
-  if (m->params.rolling_resistance == TRB_ROLLING_BIBOULET_HOUPERT) return 0.0;
+  const int law = (int)m->params.rolling_resistance;
+  if (law == TRB_ROLLING_BIBOULET_HOUPERT || law == TRB_ROLLING_LINE_SOLUTION || m->params.rolling_load > 0.0) return 0.0;
   int deepest = first;
   for (int i = first; i < first + m->n_nodes; i++)
     if (l->interference[i] > l->interference[deepest]) deepest = i;
   const double ratio = l->film_elastic[deepest] / l->film_rigid[deepest];
   return l->interference[deepest] * pow((1.0 - m->params.rolling_blend) / ratio, 1.0 / TRB_FILM_RATIO_EXPONENT);
+}
+
+/* Laws that were made for the load of a whole contact, over the length of the roller: every node gets the interference of this mean load, and
+ * the lengths that carry stand for the whole length. */
+static void pass_whole_load(const trb_model *m, int first, trb_lanes *l)
+{
+  const double length = m->params.effective_length;
+  double       load = 0.0, rolled = 0.0;
+  for (int i = first; i < first + m->n_lanes; i++) {
+    load += l->interference[i] > 0.0 ? l->load_per_length[i] * l->weight[i] : 0.0;
+    rolled += l->rolled[i];
+  }
+  if (!(load > 0.0 && rolled > 0.0)) return;
+  const double log_d = (log(load / length) - m->log_palmgren) / TRB_PALMGREN_EXPONENT, longer = length / rolled;
+  for (int i = first; i < first + m->n_lanes; i++) {
+    l->rolled_log_d[i] = log_d;
+    l->rolled[i] *= longer;
+  }
 }
 
 /* Lengths with rolling resistance, and their interference. */
@@ -131,6 +150,7 @@ static void pass_rolled(const trb_model *m, int first, trb_lanes *l)
   }
   const int n = is_gauss ? trb_loaded_part(&line, l->rolled + first, ends) : 0;
   for (int k = 0; k < n; k++) l->rolled_log_d[first + ends[k].lane] = log(trb_max(ends[k].interference, TRB_SMALLEST_INTERFERENCE));
+  if (m->params.rolling_load > 0.0) pass_whole_load(m, first, l);
 }
 
 /* The loop of rolling resistance once per form of law, so that the choice is made outside; share and law may use log_w, log_u and
@@ -146,47 +166,36 @@ static void pass_rolled(const trb_model *m, int first, trb_lanes *l)
     l->rolling[i] = l->rolled[i] > 0.0 ? force : 0.0; \
   }
 
-/* Rolling resistance (docs/theory/lubrication.md#rolling-resistance). A starved inlet makes less of it, as it makes less film (Zhou &
- * Hoeprich 1991, eq. 23). */
+/* Rolling resistance (docs/theory/lubrication.md#rolling-resistance) of contacts whose inlets are full of oil, times the share that the supply
+ * leaves. */
 static void pass_rolling(const trb_model *m, int n, trb_lanes *l)
 {
   const double base_w = m->log_palmgren - m->log_modulus, base_u = m->log_viscosity - m->log_modulus, log_g = m->log_g;
-  const double starvation = m->params.starvation_factor;
-  if (m->params.rolling_resistance == TRB_ROLLING_BIBOULET_HOUPERT) {
-    const double scale = starvation * m->geometry.effective_modulus;
+  const double supply = m->params.supply;
+  if (m->params.rolling_resistance == TRB_ROLLING_LINE_SOLUTION) {
+    const double scale = supply * m->geometry.effective_modulus;
+    TRB_ROLLING_LOOP(1.0, trb_rolling_line_solution(log_w, log_u, log_g))
+  } else if (m->params.rolling_resistance == TRB_ROLLING_BIBOULET_HOUPERT) {
+    const double scale = supply * m->geometry.effective_modulus;
     TRB_ROLLING_LOOP(1.0, trb_rolling_biboulet_houpert(log_w, log_u))
   } else {
     const trb_rolling_power power = trb_rolling_power_of((int)m->params.rolling_resistance);
-    const double            scale = starvation / m->params.pressure_coefficient, factor = power.factor * exp(power.material * log_g);
+    const double            scale = supply / m->params.pressure_coefficient, factor = power.factor * exp(power.material * log_g);
     const double            band = m->params.rolling_blend;
     TRB_ROLLING_LOOP(trb_rolling_share(l->film_elastic[i] / l->film_rigid[i] * exp(TRB_FILM_RATIO_EXPONENT * deeper), band),
                      (factor * trb_rolling_power_at(power, log_w, log_u, log_g)))
   }
 }
 
-/* Beside the part that carries, the gap is that of the undeformed surfaces and the film of the deepest node. A contact that begins to
- * carry gets this resistance with its interference over this film: an assumption that keeps forces continuous. */
-static void pass_gaps(const trb_model *m, int first, trb_lanes *l)
+/* What is left of a full inlet: a starved one makes less rolling resistance, as it makes less film (Zhou & Hoeprich 1991, eq. 23); what fast
+ * rollers push aside does not flow back in time (SKF's replenishment); a meniscus before the contact takes more of it than of the film. */
+static void pass_supply(const trb_model *m, int n, trb_lanes *l)
 {
-  int deepest = first;
-  for (int i = first; i < first + m->n_nodes; i++)
-    if (l->interference[i] > l->interference[deepest]) deepest = i;
-  const double film = l->film[deepest], depth = l->interference[deepest], scale = m->params.viscosity * depth / (depth + film);
-  for (int i = first; i < first + m->n_nodes; i++) {
-    const double idle = trb_max(l->weight[i] - l->rolled[i], 0.0), gap = film + trb_max(-l->interference[i], 0.0);
-    l->rolling[i] += scale * l->mean_speed[i] * idle * trb_rolling_gap(l->radius[i] / gap);
-  }
-}
-
-/* What fast rollers push aside does not flow back in time: SKF's factor of replenishment, on rolling resistance alone. */
-static void pass_replenishment(const trb_model *m, int n, trb_lanes *l)
-{
-  const double decline = m->replenishment;
+  const double starvation = m->params.starvation_factor, decline = m->replenishment;
   TRB_PADDED(n);
-  TRB_LANES for (int i = 0; i < n; i++) l->rolling[i] *= exp(-decline * l->mean_speed[i]);
+  TRB_LANES for (int i = 0; i < n; i++) l->supplied[i] = starvation * exp(-decline * l->mean_speed[i]);
 }
 
-/* A meniscus before the contact takes more of the rolling resistance than of the film. */
 static void pass_meniscus(const trb_model *m, int n, trb_lanes *l)
 {
   const double base_w = m->log_palmgren - m->log_modulus, base_u = m->log_viscosity - m->log_modulus, log_g = m->log_g;
@@ -197,7 +206,29 @@ static void pass_meniscus(const trb_model *m, int n, trb_lanes *l)
     const double log_d = l->rolled_log_d[i], rigid = l->film_rigid[i] * exp(TRB_PALMGREN_EXPONENT * (l->log_d[i] - log_d));
     const double log_w = base_w + TRB_PALMGREN_EXPONENT * log_d - l->log_radius[i], log_u = base_u + l->log_u[i] - l->log_radius[i];
     const double smallest = trb_max(l->radius[i] * trb_film_line_smallest(log_w, log_u, log_g), rigid);
-    l->rolling[i] *= trb_rolling_meniscus(height / smallest);
+    l->supplied[i] *= trb_rolling_meniscus(height / smallest);
+  }
+}
+
+/* Heat and supply together. */
+static void pass_supplied(int n, trb_lanes *l)
+{
+  TRB_PADDED(n);
+  TRB_LANES for (int i = 0; i < n; i++) l->rolling[i] *= trb_rolling_supplied(l->supplied[i], l->thermal_factor[i]);
+}
+
+/* Beside the part that carries, the gap is that of the undeformed surfaces and the film of the deepest node. A contact that begins to
+ * carry gets this resistance with its interference over this film: an assumption that keeps forces continuous. */
+static void pass_gaps(const trb_model *m, int first, trb_lanes *l)
+{
+  int deepest = first;
+  for (int i = first; i < first + m->n_nodes; i++)
+    if (l->interference[i] > l->interference[deepest]) deepest = i;
+  const double film = l->film[deepest], depth = l->interference[deepest],
+               scale = m->params.supply * m->params.viscosity * depth / (depth + film);
+  for (int i = first; i < first + m->n_nodes; i++) {
+    const double idle = trb_max(l->weight[i] - l->rolled[i], 0.0), gap = film + trb_max(-l->interference[i], 0.0);
+    l->rolling[i] += scale * l->supplied[i] * l->mean_speed[i] * idle * trb_rolling_gap(l->radius[i] / gap);
   }
 }
 
@@ -375,14 +406,16 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inp
   if (rolling) {
     for (int c = 0; c < n_loaded; c++) pass_rolled(m, c * n, l);
     pass_rolling(m, all, l);
-    if (m->params.flooded_gaps > 0.0) {
-      for (int c = 0; c < n_loaded; c++) pass_gaps(m, c * n, l);
-      counters->gap_nodes += all;
-    }
-    if (m->replenishment > 0.0) pass_replenishment(m, all, l);
+    const int is_starved = m->params.starvation_factor < 1.0 || m->replenishment > 0.0 || m->params.oil_height > 0.0;
+    if (is_starved || m->params.flooded_gaps > 0.0) pass_supply(m, all, l);
     if (m->params.oil_height > 0.0) {
       pass_meniscus(m, all, l);
       counters->meniscus_nodes += all;
+    }
+    if (is_starved) pass_supplied(all, l);
+    if (m->params.flooded_gaps > 0.0) {
+      for (int c = 0; c < n_loaded; c++) pass_gaps(m, c * n, l);
+      counters->gap_nodes += all;
     }
     if (m->params.hysteresis > 0.0) {
       pass_hysteresis(m, all, l);

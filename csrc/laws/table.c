@@ -59,11 +59,14 @@
   X(rolling_aihara, 3, "W U G", "Aihara 1987: alpha0 F/(Re l phi_T)", ROLLING(AIHARA)) \
   X(rolling_matsuyama, 3, "W U G", "Matsuyama 2004: alpha0 F/(Re l phi_T)", ROLLING(MATSUYAMA)) \
   X(rolling_biboulet_houpert, 3, "W U G", "Biboulet & Houpert 2010: alpha0 F/(Re l phi_T)", ROLLING(BIBOULET_HOUPERT)) \
+  X(rolling_line_solution, 3, "W U G", "Numerical solutions of the line contact: alpha0 F/(Re l phi_T)", ROLLING(LINE_SOLUTION)) \
   X(rolling_share, 2, "elastic_over_rigid half_width", "share of rolling resistance about the change of regime", trb_rolling_share(x[0], x[1])) \
   X(profile_crowned, 2, "station radius", "drop of an arc, m", trb_profile_crowned(x[0], x[1])) \
   X(profile_logarithmic, 7, "station length k1 k2 zm load effective_modulus", "logarithmic drop, m", \
     trb_profile_logarithmic(x[0], x[1], x[2], x[3], x[4], x[5], x[6])) \
-  X(rolling_meniscus, 1, "height_over_film", "Biboulet & Houpert 2010, part 1 (44): share of rolling resistance that a meniscus leaves", trb_rolling_meniscus(x[0])) \
+  X(rolling_meniscus, 1, "height_over_film", "share of rolling resistance that a meniscus leaves", trb_rolling_meniscus(x[0])) \
+  X(rolling_supplied, 2, "supply thermal_factor", "rolling resistance with a supply of oil and heat together, over that with heat", \
+    trb_rolling_supplied(x[0], x[1])) \
   X(rolling_gap, 1, "radius_over_gap", "Biboulet & Houpert 2010: F/(eta0 u l) of a rigid cylinder at a gap", trb_rolling_gap(x[0])) \
   X(rolling_hysteresis, 3, "loss_factor width radius", "Johnson: elastic hysteresis of a line contact, as a force over the load", \
     trb_rolling_hysteresis(x[0], x[1], x[2])) \

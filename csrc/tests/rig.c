@@ -32,7 +32,7 @@ trb_params rig_params(void)
   p.cage_mass = 0.2, p.cage_inertia_axial = 3.9e-4, p.cage_inertia_transverse = 2.1e-4, p.cage_offset = 0, p.cage_rail_offset = 12e-3;
   p.viscosity = 0.0346, p.pressure_coefficient = 1.97e-8, p.temperature_coefficient = 0.0392, p.conductivity = 0.134, p.temperature = 60;
   p.viscosity_law = 0, p.dicke_a = 327.79, p.dicke_b = 2.9862, p.dicke_c = 4.419e-3, p.dicke_d = 3.0115e-4, p.viscosity_exponent_cap = 25;
-  p.eyring_stress = 5e6, p.shear_modulus_floor = 1e7, p.starvation_factor = 1;
+  p.eyring_stress = 5e6, p.shear_modulus_floor = 1e7, p.starvation_factor = 1, p.supply = 1;
   p.lambda_boundary = 0.01, p.lambda_full = 1.5, p.boundary_limit = 0.1, p.rib_boundary_limit = 0.1, p.boundary_slope = 22.28,
   p.boundary_decay = 181.46;
   p.dry_friction = 0.1, p.coulomb_speed = 0.01, p.cage_entrainment_speed = 0.05, p.speed_floor = 1e-3, p.thermal_floor = 0.05;

@@ -75,8 +75,8 @@ def test_a_scene_shows_its_own_inputs_and_folds_its_parts() -> None:
     page = scene._repr_html_()
     assert page.count("<details>") == 4
     assert (
-        "standard but for thermal_law, rolling_law, rolling_pressure_force, rib_film, damping, quadrature, n_slices"
-        in page
+        "standard but for thermal_law, supply, rolling_law, rolling_load, rolling_pressure_force, rib_film, damping, "
+        "quadrature, n_slices" in page
     )
     assert ["axial_load", "4930", "N"] in [row[:3] for row in cells(scene)]
     assert repr(scene) == "<Scene: 30310, speed changing in time, axial load 4930 N, VG100 (FVA3) at 60 C>"

@@ -45,10 +45,14 @@ def test_the_constants_of_the_standard_follow_the_size(length: float) -> None:
     roller = trb.Roller(diameter=10e-3, effective_length=length, profile=Profile.iso())
     bearing = Bearing(n_rollers=15, cup_half_angle_deg=14.0, pitch_diameter=75e-3, roller=roller)
     profile = bearing.roller.profile
-    long = length > 25e-3
-    assert profile.a_p == (0.0005 if long else 0.00035)
-    assert (profile.c_p, profile.d_p) == pytest.approx((25e-3, 5e-3) if long else (20e-3, 0.0))
+    assert (profile.a_p, profile.d_p) == (0.00045, 0.0)  # ISO 16281, tapered rollers
+    assert profile.c_p == pytest.approx(length)
     assert {"roller.profile.a_p", "roller.profile.c_p"} <= set(bearing.assumed)
+    straight = bearing.replace(cup_half_angle_deg=0.0, ribs=trb.Ribs(flanges="NU"))
+    cylindrical = straight.roller.profile
+    long = length > 25e-3
+    assert cylindrical.a_p == (0.0005 if long else 0.00035)
+    assert (cylindrical.c_p, cylindrical.d_p) == pytest.approx((25e-3, 5e-3) if long else (20e-3, 0.0))
 
 
 def test_a_profile_without_drop_is_straight() -> None:
@@ -116,8 +120,8 @@ def test_a_raceway_profile_is_kept_in_a_file() -> None:
     assert drop_of(bearing, bearing.cup_profile, [HALF * 0.5])[0] > 0.0
 
 
-def test_an_estimated_bearing_has_the_standard_profile_with_a_band_from_straight() -> None:
+def test_an_estimated_bearing_has_the_standard_profile_with_the_band_of_published_ones() -> None:
     bearing = trb.Bearing.from_catalogue(bore=0.080, outside=0.140, width=0.03525, C=187e3, e=0.43)
     band = next(entry for entry in bearing.estimated if entry.path == "roller.profile.a_p")
-    assert (band.low, band.value, band.high) == (0.0, 0.00035, 0.0005)
+    assert (band.low, band.value, band.high) == (0.00025, 0.00045, 0.0006)
     assert bearing.roller.profile.kind == "iso"

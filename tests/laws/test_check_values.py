@@ -265,7 +265,16 @@ ROLLING = {
         / (1 + (mpmath.mpf("1.4") / 1.45 * mpmath.sqrt(w / mpmath.sqrt(2 * u))) ** 10) ** 0.1
     ),
 }
-"""F/(E' Re l) as the sources print them."""
+ROLLING["rolling_line_solution"] = lambda w, u, g: (
+    ROLLING["rolling_biboulet_houpert"](w, u, g)
+    / (
+        mpmath.mpf("1.064")
+        * (min(max(u, mpmath.mpf("9e-12")), mpmath.mpf("5e-10")) / mpmath.mpf("1e-10")) ** mpmath.mpf("0.053")
+        * (min(max(w, mpmath.mpf("2e-5")), mpmath.mpf("2.6e-4")) / mpmath.mpf("5e-5")) ** mpmath.mpf("-0.031")
+        * (min(max(g, 3100), 5000) / 4500) ** mpmath.mpf("0.02")
+    )
+)
+"""F/(E' Re l) as the sources print them, and the numerical solutions' with the ends of their range."""
 
 
 @pytest.mark.parametrize("name", ROLLING)

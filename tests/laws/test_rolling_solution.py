@@ -45,7 +45,7 @@ def test_films_of_the_solution(solved: dict[tuple[float, float, float], Any]) ->
 
 
 @pytest.mark.parametrize("point", POINTS)
-def test_the_default_law(solved: dict[tuple[float, float, float], Any], point: tuple[float, float, float]) -> None:
+def test_the_theory(solved: dict[tuple[float, float, float], Any], point: tuple[float, float, float]) -> None:
     (low, high), (thin, thick) = RANGES["biboulet_houpert"]
     assert low < point[0] < high
     assert thin < point[2] < thick
@@ -56,3 +56,69 @@ def test_laws_that_agree_and_one_that_does_not(solved: dict[tuple[float, float, 
     w, u, g = POINTS[0]
     assert laws.rolling_matsuyama(w, u, g) / g == pytest.approx(solved[POINTS[0]].force, rel=0.1)
     assert laws.rolling_line(w, u, g) / g < 0.6 * solved[POINTS[0]].force
+
+
+INLET = 0.3
+"""Where the oil begins before the contact's centre, over Re: the gap is a twentieth of Re there. k stands for such an inlet; one
+without end resists 0 to 15 % more."""
+
+
+def of_inlet(found: Any, u: float) -> float:
+    """Force of a solution whose oil begins there: what the rest of an endless inlet adds is taken off."""
+    return float(found.force) - 12.0 * u / INLET
+
+
+def starved(w: float, u: float, g: float, **how: Any) -> Any:
+    from rolling import solution
+
+    for nodes in (120, 150, 134, 170, 201):
+        try:
+            return solution.solve(w, u, g, nodes, viscosity=0.03, **how)
+        except solution.NoSolution:
+            continue
+    raise AssertionError(f"no solution at W {w:g}, U {u:g}, G {g:g}, {how}")
+
+
+def test_the_default_law() -> None:
+    w, u, g = 5e-5, 1.2e-10, 4460.0
+    found = starved(w, u, g)
+    assert laws.rolling_line_solution(w, u, g) / g == pytest.approx(of_inlet(found, u), rel=0.05)
+
+
+def test_heat_and_supply_together() -> None:
+    """A meniscus two half widths before the contact: the short inlet hardly heats. A plain product is a quarter too low."""
+    w, u, g, loading = 5e-5, 1.2e-10, 4460.0, 1.5
+    cold, warm = (starved(w, u, g, meniscus=2.0, heat=heat).force for heat in (0.0, loading))
+    left = cold / of_inlet(starved(w, u, g), u)
+    phi = laws.film_thermal_aihara(loading)
+    assert laws.rolling_supplied(left, phi) * phi / left == pytest.approx(warm / cold, abs=0.03)
+    assert phi < 0.8 * warm / cold
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("g", [3200.0, 4460.0])
+def test_the_default_law_over_its_range(g: float) -> None:
+    """400 to 460 nodes, the viscosity of Roelands: k holds within 6 % from W 2e-5 on, the law within 9 % below."""
+    for w in (2e-6, 1e-5, 2e-5, 5e-5, 1e-4):
+        for u in (1e-11, 1e-10, 2.5e-10, 5e-10):
+            law = laws.rolling_line_solution(w, u, g) / g
+            near = 0.06 if w >= 2e-5 else 0.09
+            assert law == pytest.approx(of_inlet(starved(w, u, g), u), rel=near)
+
+
+@pytest.mark.slow
+def test_heat_and_supply_over_their_range() -> None:
+    """Meniscus at 2 to 10 half widths, heat up to L 1.5: the law of both within 0.03, that of the supply within 0.06."""
+    for w, u, g in ((5e-5, 1.2e-10, 4460.0), (3e-5, 3e-10, 4460.0), (1e-4, 5e-11, 3745.0)):
+        full = starved(w, u, g)
+        for place in (10.0, 5.0, 3.0, 2.0):
+            cold = starved(w, u, g, meniscus=place).force
+            left = cold / of_inlet(full, u)
+            root = float(np.sqrt(place**2 - 1.0))
+            height = full.smallest + 4.0 * w / np.pi * (place * root - np.log(place + root))
+            if height > 2.0 * full.smallest:
+                assert laws.rolling_meniscus(height / full.smallest) == pytest.approx(left, abs=0.06)
+            for loading in (0.5, 1.5):
+                warm = starved(w, u, g, meniscus=place, heat=loading).force
+                phi = laws.film_thermal_aihara(loading)
+                assert laws.rolling_supplied(left, phi) * phi / left == pytest.approx(warm / cold, abs=0.03)

@@ -357,7 +357,7 @@ def test_a_number_shows(kit: SimpleNamespace, name: str) -> None:
         roller = scene.bearing.roller.replace(profile=Profile.crowned(100.0))
         scene = scene.replace(bearing=scene.bearing.replace(roller=roller))
     if name == "rolling_blend":
-        effects = scene.effects.replace(rolling_law="zhou_hoeprich")
+        effects = scene.effects.replace(rolling_law="zhou_hoeprich", rolling_load="slices")
         scene = scene.replace(lubricant=scene.lubricant.replace(viscosity=1e-3), effects=effects)
     one, two = (
         Simulation(changed(scene, name, number)).record(vector, 0.0)[field]
@@ -384,7 +384,7 @@ ELSEWHERE = {
     " rolling_pressure_force rib_film rib_turning guidance pocket_bars pocket_ends pocket_edges profile viscosity_law n_rollers"
     " n_slices ring_free outer_free outer_turns cage_modes",
     "laws/test_in_contacts.py": "asperity_factor asperity_exponent rib_asperity_factor rib_asperity_exponent mixed_law"
-    " rib_boundary_limit replenishment",
+    " rib_boundary_limit replenishment supply rolling_load",
     "laws/test_oracles.py": "oil_height flooded_gaps hysteresis",
     "geometry/test_profiles.py": "profile_a profile_c profile_d profile_k",
     "geometry/test_interference.py": "front_rib_low front_rib_high",

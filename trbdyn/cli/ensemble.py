@@ -42,9 +42,10 @@ def ensemble(options: Options) -> int:
     it, and how well designs that were not run can be predicted. The same command goes on with a run that was stopped.
     """
     from trbdyn.results import numbers
+    from trbdyn.study.bands import Band
     from trbdyn.study.gather import listed_in
     from trbdyn.study.surrogate import FEWEST_DRAWS, surrogate
-    from trbdyn.study.uncertainty import Band, checked_bands, uncertainty
+    from trbdyn.study.uncertainty import checked_bands, uncertainty
 
     scene, run = subject_with_changes(options.case, options.changes)
     bands = checked_bands([Band(path=path, low=low, high=high) for path, low, high in map(_band, options.band)])

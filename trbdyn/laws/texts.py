@@ -81,6 +81,8 @@ OF_ONE_LAW: Final[dict[tuple[str, str], tuple[str, str]]] = {
     ("journal_shear", "radius"): ("m", "radius of the journal"),
     ("profile_crowned", "radius"): ("m", "radius of the arc"),
     ("rolling_meniscus", "height_over_film"): ("1", "S: height of the oil over the smallest film"),
+    ("rolling_supplied", "supply"): ("1", "share of rolling resistance that the supply leaves without heat"),
+    ("rolling_supplied", "thermal_factor"): ("1", "share that the heat of a full inlet leaves"),
     ("rolling_gap", "radius_over_gap"): ("1", "equivalent radius over the gap"),
     ("rolling_hysteresis", "loss_factor"): ("1", "a_v: share of the elastic energy that is lost"),
     ("rolling_hysteresis", "width"): ("m", "half width of the contact"),

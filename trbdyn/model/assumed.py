@@ -51,8 +51,13 @@ RIG: Final[dict[str, float]] = {
 """Numbers of the 30310 rig (m, kg, kg m2, kg/m3, N, N/m^1.5), to which assumed ones are in proportion."""
 
 ISO_SHORT, ISO_LONG, ISO_LENGTH = 0.00035, 0.0005, 2.5
-"""Profile of ISO/TS 16281: drop over diameter of rollers up to the third number's diameters long, and of longer ones, whose ends
-drop over this length."""
+"""Profile of ISO/TS 16281: drop over diameter of cylindrical rollers up to the third number's diameters long, and of longer ones,
+whose ends drop over this length."""
+ISO_TAPERED: Final = 0.00045
+"""The same of tapered rollers of any length (ISO 16281)."""
+PROFILE_BAND: Final = (0.00025, 0.0006)
+"""Drop over diameter that rollers of unknown profile may have: makers crown them; the standard has 0.00035 and 0.00045, rollers
+of a 32216 have 0.0005 (Wingertszahn et al. 2023). Both ends lie a fifth to a third beyond these: assumed."""
 
 PROFILE_FIELDS: Final[dict[str, tuple[str, ...]]] = {
     "iso": ("a_p", "c_p", "d_p", "k_p"),
@@ -115,11 +120,11 @@ def scaled(size: Mapping[str, float]) -> dict[str, dict[str, float]]:
     cylinder = size["cup_half_angle_deg"] == 0.0
     made["roller"]["end_radius"] = END_RADIUS * size["diameter"] if cylinder else 0.0
     made["ribs"]["clearance"] = RIB_CLEARANCE * size["diameter"] if cylinder else 0.0
-    ends = min(size["effective_length"], ISO_LENGTH * size["diameter"])
+    ends = min(size["effective_length"], ISO_LENGTH * size["diameter"]) if cylinder else size["effective_length"]
     middle = size["effective_length"] - ends
     made["roller.profile"] = {
         "load": RIG["load"] * (across * along),
-        "a_p": ISO_LONG if middle > 0.0 else ISO_SHORT,
+        "a_p": ISO_LONG if middle > 0.0 else ISO_SHORT if cylinder else ISO_TAPERED,
         "c_p": ends,
         "d_p": middle,
     }

@@ -19,7 +19,7 @@ from typing import Any, Final
 
 from trbdyn.base.validation import number_of, whole_number_of
 from trbdyn.errors import MISSING, InputError, Problem
-from trbdyn.model.assumed import ISO_LENGTH, ISO_LONG, ISO_SHORT, scaled
+from trbdyn.model.assumed import PROFILE_BAND, scaled
 from trbdyn.model.catalogue_cylinders import check_kind, usual_clearance, with_raceways
 from trbdyn.model.catalogue_rollers import FILL_BAND, MAKER, Page, Rollers, solve
 from trbdyn.model.core_table import PARAMETERS
@@ -365,9 +365,9 @@ def _fields(
     if cage_mass is None:
         of_mass = f"{origin} pitch diameter, roller diameter and roller length; of steel"
         share("cage.mass", inner["mass"], 0.4, 1.6, "kg", of_mass)
-    amplitude = ISO_SHORT if found.length <= ISO_LENGTH * found.diameter else ISO_LONG
-    source = "profile of ISO/TS 16281; band from straight (0) to the larger of its constants, which a 32216 was measured with"
-    estimates.append(Estimated.of("roller.profile.a_p", amplitude, 0.0, ISO_LONG, "1", source))
+    source = "profile of ISO 16281; band of published profiles (docs/theory/geometry.md#roller-profile)"
+    amplitude = made["roller.profile"]["a_p"]
+    estimates.append(Estimated.of("roller.profile.a_p", amplitude, *PROFILE_BAND, "1", source))
     fields = {
         "n_rollers": found.count,
         "cup_half_angle_deg": found.angle,

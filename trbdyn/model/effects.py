@@ -10,7 +10,7 @@ from pydantic import model_validator
 from trbdyn.base.validation import Flag, Model, Number, Whole, split_paths, unit
 from trbdyn.errors import InputError, unknown_name
 from trbdyn.model.core_table import parameter
-from trbdyn.model.lubricants.supply import OIL_SUPPLIES, REPLENISHMENT
+from trbdyn.model.lubricants.supply import OIL_SUPPLIES, REPLENISHMENT, ROLLING_SUPPLY, rolling_supply_of
 
 FILMED: Final = ("mixed", "full_film")
 """Kinds of lubrication with films."""
@@ -31,7 +31,7 @@ class Friction(Model):
     boundary_limit, boundary_slope, boundary_decay : float
         mu_bd = (-limit + slope s) exp(-decay s) + limit of the slide-roll ratio s (1).
     rib_boundary_limit : float
-        The limit at ribs (1). Aihara 1987 and Zhou and Hoeprich 1991 have 0.2 there; the default is the paper's.
+        The limit at ribs (1): 0.2 by Aihara 1987, Zhou and Hoeprich 1991 and the starting torques of a maker; the paper has 0.1.
     dry_friction : float
         Coulomb coefficient of dry contacts and of traction 'coulomb' (1); assumed.
     coulomb_speed : float
@@ -43,7 +43,7 @@ class Friction(Model):
     thermal_floor : float
         Smallest thermal film reduction factor, smooth (1).
     rolling_blend : float
-        Half width in h_PE/h_IR over which rolling resistance sets in, with every law but 'biboulet_houpert' (1); assumed.
+        Half width in h_PE/h_IR over which rolling resistance sets in, with the laws that are powers (1); assumed.
 
     Notes
     -----
@@ -58,7 +58,7 @@ class Friction(Model):
     rib_asperity_factor: Annotated[Number, parameter("rib_asperity_factor")] = 1.90
     rib_asperity_exponent: Annotated[Number, parameter("rib_asperity_exponent")] = 0.99
     boundary_limit: Annotated[Number, parameter("boundary_limit")] = 0.1
-    rib_boundary_limit: Annotated[Number, parameter("rib_boundary_limit")] = 0.1
+    rib_boundary_limit: Annotated[Number, parameter("rib_boundary_limit")] = 0.2
     boundary_slope: Annotated[Number, parameter("boundary_slope")] = 22.28
     boundary_decay: Annotated[Number, parameter("boundary_decay")] = 181.46
     dry_friction: Annotated[Number, parameter("dry_friction")] = 0.1
@@ -89,12 +89,13 @@ def refuse_idle(damping: str, lubrication: str, given: Mapping[str, Any]) -> Non
 class Effects(Model):
     """Every switch and choice of a scene; the defaults are those of `standard`.
 
-    They are chosen by physics, and among laws by measured torques. The pressure of a rolling contact's film is not symmetric:
+    They are chosen by physics. The pressure of a rolling contact's film is not symmetric:
     that makes rolling resistance, and it pushes the roller, too. With this force (`rolling_pressure_force`) the moments on a
     roller balance, and both rings carry the same friction torque, as they must in steady rotation; without it they differ by
-    about 40 %. The film at the rib is that of the piezoviscous-elastic regime (`rib_film` 'pe'): the other formula gives tens of
-    micrometres there, so that no rib would ever run in mixed friction. Rolling resistance and heat of the inlet follow the laws
-    that were nearest to the measured torques of four bearings, by a rule that was written down before
+    about 40 %. The film at the rib is that of a contact
+    that is long along rolling, as this one is (`rib_film` 'needle'): the paper's formula for the isoviscous-rigid regime gives
+    tens of micrometres there, so that no rib would ever run in mixed friction. Rolling resistance follows numerical solutions of
+    the contact, heat of the inlet Aihara's law, which such solutions confirm; the supply of oil is assumed
     (docs/validation.md#friction-torque-beside-measured-values). Contacts damp a little (assumed). `paper` has none of these: it
     repeats the paper.
 
@@ -121,6 +122,10 @@ class Effects(Model):
     mixed_law : {'power', 'exponential'}
         Share of boundary friction in mixed lubrication: the sixth power of the paper (eq. 2), which ends at a film parameter of
         1.5, or the share exp(-B Lambda^C) of the load that asperities carry, with the constants of `friction`.
+    supply : float or {'bath', 'flooded'}, optional
+        Share of the rolling resistance of full contacts that the supply of oil leaves on raceways, or a state of lubrication by
+        its name in `trbdyn.lubricants.ROLLING_SUPPLY`. Where it is not stated it is that of a bath, 0.83, or with `oil_fill` 1
+        that of a flooded bearing, 1. It is assumed: `trbdyn.uncertainty` has it between 0.7 and 1. Films keep their thickness.
     replenishment : float or {'flooded', 'bath', 'jet', 'oil_air', 'grease'}
         SKF's constant K_rs (for mm2/s, rpm and mm; 0: none), or a state of lubrication by its name in
         `trbdyn.lubricants.REPLENISHMENT`: rolling resistance on raceways falls by exp[-K_rs nu n (d + D) sqrt(6/(2 (D - d)))], as
@@ -128,7 +133,7 @@ class Effects(Model):
         diameters. Films keep their thickness.
     oil_height : float
         Height of the oil before each contact on a raceway (m), 0: as much as it takes. Rolling resistance is that of a contact
-        whose meniscus lies where the gap is as high (Biboulet and Houpert 2010); films keep their thickness.
+        whose meniscus lies where the gap is as high; films keep their thickness.
     flooded_gaps : bool
         Gaps beside the loaded part of a contact, of a crowned or a misaligned roller, are full of oil and resist rolling, too
         (Biboulet and Houpert 2010); acts with `rolling_resistance`.
@@ -137,10 +142,13 @@ class Effects(Model):
         with `rolling_resistance`.
     rolling_resistance : bool
         EHL rolling resistance; acts where there are films.
-    rolling_law : {'zhou_hoeprich', 'goksem_hargreaves', 'aihara', 'matsuyama', 'biboulet_houpert'}
-        Law of the rolling resistance. The default was nearest to measured torques; 'biboulet_houpert' agrees with a numerical
-        solution of a contact that is full of oil, and gives more; the paper's is 'zhou_hoeprich'
-        (docs/theory/lubrication.md#which-law-of-rolling-resistance).
+    rolling_law : {'line_solution', 'biboulet_houpert', 'zhou_hoeprich', 'goksem_hargreaves', 'aihara', 'matsuyama'}
+        Law of the rolling resistance. The default follows numerical solutions of a contact that is full of oil; the paper's is
+        'zhou_hoeprich' (docs/theory/lubrication.md#which-law-of-rolling-resistance).
+    rolling_load : {'contact', 'slices'}
+        Load in the laws 'zhou_hoeprich' and 'aihara': that of the whole contact over the roller's length, as in the papers of
+        these names, or of each slice, as in the paper. With slices a crowned roller counts its load twice: in the pressure of
+        the slices and in their number.
     rolling_pressure_force : bool
         Pressure force of the rolling film on the roller; needs `rolling_resistance`, and is off by default without it.
     starvation_factor : float
@@ -200,19 +208,21 @@ class Effects(Model):
     thermal: Flag = True
     thermal_law: Literal["gupta", "aihara"] = "aihara"
     mixed_law: Literal["power", "exponential"] = "power"
+    supply: Annotated[Number, parameter("supply")] | None = None
     replenishment: Annotated[Number, unit("1", ge=0, le=1e-6)] = 0.0
     oil_height: Annotated[Number, parameter("oil_height")] = 0.0
     flooded_gaps: Flag = False
     hysteresis: Annotated[Number, parameter("hysteresis")] = 0.0
     rolling_resistance: Flag = True
-    rolling_law: Literal["zhou_hoeprich", "goksem_hargreaves", "aihara", "matsuyama", "biboulet_houpert"] = (
-        "goksem_hargreaves"
-    )
+    rolling_law: Literal[
+        "line_solution", "biboulet_houpert", "zhou_hoeprich", "goksem_hargreaves", "aihara", "matsuyama"
+    ] = "line_solution"
+    rolling_load: Literal["contact", "slices"] = "contact"
     rolling_pressure_force: Flag = True
     starvation_factor: Annotated[Number, parameter("starvation_factor")] = 1.0
     back_rib: Flag = True
     front_rib: Flag = True
-    rib_film: Literal["max", "pe", "needle"] = "pe"
+    rib_film: Literal["max", "pe", "needle"] = "needle"
     rib_turning: Flag = False
     pocket_bars: Flag = True
     pocket_ends: Flag = True
@@ -241,7 +251,14 @@ class Effects(Model):
         # a table out of a file has the coefficients of every law; one of an earlier version lacks the newest fields
         if len(values) < 0.5 * len(cls.model_fields):
             refuse_idle(values.get("damping", "film"), values.get("lubrication", "mixed"), values)
-        for name, states, most in (("oil_fill", OIL_SUPPLIES, "1"), ("replenishment", REPLENISHMENT, "1e-6")):
+        elif "rolling_load" not in values:
+            values = {"rolling_load": "slices", "supply": 1.0, **values}
+        states_of: dict[str, tuple[Mapping[str, Any], str]] = {
+            "oil_fill": (OIL_SUPPLIES, "1"),
+            "replenishment": (REPLENISHMENT, "1e-6"),
+            "supply": (ROLLING_SUPPLY, "1"),
+        }
+        for name, (states, most) in states_of.items():
             if isinstance(state := values.get(name), str):
                 if state not in states:
                     limit = f"must be from 0 to {most}, or a name: {unknown_name(state, states)}"
@@ -269,6 +286,11 @@ class Effects(Model):
         return self.bodies == "rollers_and_cage"
 
     @property
+    def rolling_supply(self) -> float:
+        """Share of rolling resistance that the supply of oil leaves (1): `supply`, or that of the state by `oil_fill`."""
+        return rolling_supply_of(self.oil_fill).value if self.supply is None else self.supply
+
+    @property
     def films(self) -> bool:
         """Whether contacts have lubricant films."""
         return self.lubrication in FILMED
@@ -276,24 +298,27 @@ class Effects(Model):
     @classmethod
     def standard(cls) -> Self:
         """What we recommend, and the default: the paper's effects, and the rolling film's pressure force (torques on both rings
-        agree), the law of rolling resistance of Goksem and Hargreaves with Aihara's heat of the inlet, normal damping, the
-        piezoviscous-elastic film at the rib, Gauss nodes.
+        agree), rolling resistance by numerical solutions of the contact with Aihara's heat of the inlet and the supply of a bath,
+        normal damping, the film of a needle contact and twice the paper's boundary friction at ribs, Gauss nodes.
         """
         return cls()
 
     @classmethod
     def paper(cls) -> Self:
         """The assumptions of Sakaguchi and Harada 2006, errata corrected: no damping, no pressure force of the rolling film,
-        the law of rolling resistance of Zhou and Hoeprich, uniform slices.
+        the law of rolling resistance of Zhou and Hoeprich in every slice, full supply, uniform slices.
         """
         return cls(
             thermal_law="gupta",
             rolling_law="zhou_hoeprich",
+            rolling_load="slices",
+            supply=1.0,
             rolling_pressure_force=False,
             rib_film="max",
             damping="off",
             quadrature="uniform",
             n_slices=24,
+            friction=Friction(rib_boundary_limit=0.1),
         )
 
     @classmethod

@@ -46,7 +46,9 @@ CODES: Final[dict[str, dict[str, int]]] = {
         "aihara": 3,
         "matsuyama": 4,
         "biboulet_houpert": 5,
+        "line_solution": 6,
     },
+    "rolling_load": {"slices": 0, "contact": 1},
     "rib_film": {"max": 0, "pe": 1, "needle": 2},
     "thermal": {"gupta": 1, "aihara": 2},
     "mixed_law": {"power": 0, "exponential": 1},
@@ -67,6 +69,9 @@ class Entry:
 
 
 Entries = dict[str, Entry]
+
+WHOLE_LOAD: Final = ("zhou_hoeprich", "aihara")
+"""Laws of rolling resistance that were made for the load of a whole contact."""
 
 RING_PLACES: Final = ("displacement_x", "displacement_y", "displacement_z", "rotation_x", "rotation_y")
 HOUSING_LOADS: Final = ("housing_force_x", "housing_force_y", "housing_force_z", "housing_moment_x", "housing_moment_y")
@@ -133,6 +138,8 @@ def effects_entries(effects: Effects) -> Entries:
     rolling, off = effects.films and effects.rolling_resistance, effects.damping == "off"
     own["thermal"] = effects.films and effects.thermal and effects.thermal_law
     own["rolling_resistance"] = rolling and effects.rolling_law
+    own["rolling_load"] = effects.rolling_load == "contact" and effects.rolling_law in WHOLE_LOAD
+    own["supply"] = effects.rolling_supply
     own["rolling_pressure_force"] = rolling and effects.rolling_pressure_force
     own["damping"] = effects.damping if effects.films or off else "hunt_crossley"
     return {

@@ -36,19 +36,19 @@ class Profile(Model):
         Design load Q of the logarithmic profile (N); by default the one of the 30310 rig times diameter and length of
         the roller over those of the rig, that is at the same pressure.
     a_p, k_p : float
-        Factor of the roller's diameter, and exponent, of the ISO profile (1); by default those of the standard: 0.00035 for
-        rollers up to 2.5 diameters long, 0.0005 for longer ones; 2.
+        Factor of the roller's diameter, and exponent, of the ISO profile (1); by default those of the standard: 0.00045 for
+        tapered rollers, 0.00035 for cylindrical ones up to 2.5 diameters long, 0.0005 for longer ones; 2.
     c_p, d_p : float
         Length over which the ISO profile drops, both ends together, and length of its straight middle (m); by default those of
-        the standard: the effective length and 0, of longer rollers 2.5 diameters and the rest.
+        the standard: the effective length and 0, of longer cylindrical rollers 2.5 diameters and the rest.
     stations, drops : sequence of float
         Places from mid length towards the large end (m), rising, over the whole effective length, and the drop there (m), two or
         more. Between them a monotone cubic (SciPy's ``PchipInterpolator``).
 
     Notes
     -----
-    0.00035 with the factor Dwe for rollers up to 2.5 Dwe is what the package `tribology` has as DIN 26281; the numbers for longer
-    rollers are from memory of ISO/TS 16281 (docs/theory/geometry.md#roller-profile).
+    0.00035 with the factor Dwe for rollers up to 2.5 Dwe is what the package `tribology` has as DIN 26281; the numbers of
+    longer and of tapered rollers are quoted, without a printed copy of ISO 16281 (docs/theory/geometry.md#roller-profile).
     """
 
     _assumed: ClassVar[bool] = True

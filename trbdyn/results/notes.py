@@ -43,6 +43,7 @@ RANGES: Final = {
     "aihara": Range((2.8e-5, 1e-4), (2500.0, 6000.0)),
     "matsuyama": Range((2.8e-5, 3.5e-4), (2500.0, 6000.0)),
     "biboulet_houpert": Range((2e-7, 3.5e-4), (1000.0, 6000.0)),
+    "line_solution": Range((2e-7, 3.5e-4), (1000.0, 6000.0)),
 }
 """By the name in `Effects.rolling_law`: for 'zhou_hoeprich' that of its data, for the others where they were compared with a
 numerical solution (docs/theory/lubrication.md#which-law-of-rolling-resistance)."""

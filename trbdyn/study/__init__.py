@@ -27,6 +27,6 @@ if TYPE_CHECKING:
     from trbdyn.study.gather import load as load, save as save
     from trbdyn.study.runner import Running as Running, collect as collect, run as run
     from trbdyn.study.study_file import STUDIES as STUDIES, load_study as load_study, shipped_studies as shipped_studies
-    from trbdyn.study.uncertainty import Band as Band, open_inputs as open_inputs
+    from trbdyn.study.bands import Band as Band, open_inputs as open_inputs
 
 __all__, __getattr__, __dir__ = lazy_names(__name__, __file__)

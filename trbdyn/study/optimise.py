@@ -27,13 +27,14 @@ from trbdyn.results.result import Result
 from trbdyn.run.options import RunOptions
 from trbdyn.run.simulation import Simulation
 from trbdyn.study.answer import Answer
+from trbdyn.study.bands import Band
 from trbdyn.study.definition import Base, Case, Study, split_path
 from trbdyn.study.drawn_bearing import belongs_together
 from trbdyn.study.edge_search import NUMBERS, EdgeCases
 from trbdyn.study.guide import Aims, Fits, next_designs
 from trbdyn.study.runner import Running
 from trbdyn.study.runner import run as run_study
-from trbdyn.study.uncertainty import Band, checked_bands, is_whole, unit_draws
+from trbdyn.study.uncertainty import checked_bands, is_whole, unit_draws
 
 if TYPE_CHECKING:
     import xarray

@@ -20,7 +20,8 @@ from numpy.typing import ArrayLike, NDArray
 from trbdyn.base.expected import expect
 from trbdyn.base.shown import Shown, Tabled
 from trbdyn.errors import InputError, unknown_name
-from trbdyn.study.uncertainty import Band, Uncertainty
+from trbdyn.study.bands import Band
+from trbdyn.study.uncertainty import Uncertainty
 
 if TYPE_CHECKING:
     from sklearn.gaussian_process import GaussianProcessRegressor

@@ -18,11 +18,12 @@ from trbdyn.results.fields import table
 from trbdyn.run.options import RunOptions
 from trbdyn.run.torque_laws import torque_laws
 from trbdyn.study.answer import Answer
+from trbdyn.study.bands import Band, open_inputs
 from trbdyn.study.definition import Case
 from trbdyn.study.points import DIMS, Points
 from trbdyn.study.runner import Running
 from trbdyn.study.settled import JUDGED, TURNS, run_until_settled, short_run, variables
-from trbdyn.study.uncertainty import FEWEST, Band, band_of, checked_bands, drawn_case, open_inputs, unit_draws
+from trbdyn.study.uncertainty import FEWEST, band_of, checked_bands, drawn_case, unit_draws
 
 if TYPE_CHECKING:
     import xarray

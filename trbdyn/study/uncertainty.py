@@ -15,14 +15,14 @@ from scipy.stats import qmc
 
 from trbdyn.base.expected import expect
 from trbdyn.base.shown import Displayed, Shown
-from trbdyn.base.validation import Model, Number, whole_number_of
+from trbdyn.base.validation import whole_number_of
 from trbdyn.errors import InputError, unknown_name
-from trbdyn.model.assembly import Assembly, ShaftBearing, Subject
+from trbdyn.model.assembly import Assembly, Subject
 from trbdyn.model.bearing import Bearing
-from trbdyn.model.lubricants import REPLENISHMENT, supply_of
 from trbdyn.model.scene import Scene
 from trbdyn.run.options import RunOptions
 from trbdyn.run.torque_laws import TorqueLaws, torque_laws
+from trbdyn.study.bands import Band, open_inputs
 from trbdyn.study.definition import Base, Case, Study, split_path
 from trbdyn.study.drawn_bearing import belongs_together
 from trbdyn.study.gather import listed_in
@@ -38,25 +38,6 @@ LEVEL: Final = 0.95
 """Share of what may come that a band holds, if the draws are enough for it."""
 FEWEST: Final = 8
 """Fewest draws that make a band."""
-
-
-class Band(Model):
-    """An input that is not known exactly; every value between both ends is as likely.
-
-    Parameters
-    ----------
-    path : str
-        Which input, as in a study: ``lubricant.temperature_c``, ``bearing.roller.diameter``.
-    low, high : float
-        Ends, in the unit of the input. Whole numbers at both ends of a number that is whole stay whole.
-    source : str
-        Why the band is what it is.
-    """
-
-    path: str
-    low: Number
-    high: Number
-    source: str = "given"
 
 
 @dataclass(frozen=True)
@@ -162,57 +143,6 @@ class Uncertainty(Displayed):
         if not self.refused:
             return ""
         return f"; {len(self.refused)} more could not be run, so that the bands leave them out: {self.refused[0]}"
-
-
-def open_inputs(subject: Subject) -> tuple[Band, ...]:
-    """Inputs of a scene or an assembly that are hardly ever known exactly, and the bands they have without better knowledge.
-
-    Estimates of a catalogue bearing with their own bands; temperature, roughness, boundary friction and, where oil drags,
-    its share in the mixture.
-
-    Parameters
-    ----------
-    subject : Scene or Assembly
-        What is simulated. The bearings of an assembly have bands of their own, which are drawn by themselves.
-
-    Returns
-    -------
-    tuple of Band
-    """
-    return tuple(band for prefix, part in subject.parts.items() for band in _open_inputs(prefix, part))
-
-
-def _open_inputs(prefix: str, part: Scene | ShaftBearing) -> list[Band]:
-    """Those of a bearing, whose paths begin with a prefix."""
-    oil, effects, rough = part.lubricant, part.effects, part.bearing.roughness
-    found = [
-        Band(path=f"{prefix}bearing.{entry.path}", low=entry.low, high=entry.high, source=entry.source)
-        for entry in part.bearing.estimated
-        if entry.low < entry.high
-    ]
-
-    def add(path: str, low: float, high: float, source: str) -> None:
-        found.append(Band(path=f"{prefix}{path}", low=low, high=high, source=source))
-
-    if effects.films and oil.oil is not None:
-        t = oil.temperature_c
-        add("lubricant.temperature_c", t - 3.0, t + 3.0, "thermocouple at the ring: assumed")
-    if effects.films:
-        for name, value in (("raceway", rough.raceway), ("rib", rough.rib)):
-            add(f"bearing.roughness.{name}", 0.7 * value, 1.5 * value, "finishing and running in: assumed")
-    if effects.lubrication in ("mixed", "boundary"):
-        limit = effects.friction.boundary_limit
-        add("effects.friction.boundary_limit", 0.7 * limit, 2.0 * limit, "0.07 to 0.2, published")
-    for state in REPLENISHMENT.values():
-        if effects.films and effects.rolling_resistance and effects.replenishment == state.value > 0.0:
-            add("effects.replenishment", state.low, state.high, f"{state.words}: assumed")
-            break
-    if effects.oil_fill > 0.0:
-        supply = supply_of(effects.oil_fill)
-        low, high = (0.0, min(2.0 * effects.oil_fill, 1.0)) if supply is None else (supply.low, supply.high)
-        words = "known in no bearing" if supply is None else supply.words
-        add("effects.oil_fill", low, high, f"{words}: assumed")
-    return found
 
 
 def uncertainty(

@@ -26,7 +26,9 @@ if TYPE_CHECKING:
     from trbdyn.model.lubricants.shipped import gear_75w90 as gear_75w90, gear_80w90 as gear_80w90, atf as atf
     from trbdyn.model.lubricants.supply import OIL_SUPPLIES as OIL_SUPPLIES, OilSupply as OilSupply
     from trbdyn.model.lubricants.supply import REPLENISHMENT as REPLENISHMENT, Replenishment as Replenishment
+    from trbdyn.model.lubricants.supply import ROLLING_SUPPLY as ROLLING_SUPPLY, RollingSupply as RollingSupply
     from trbdyn.model.lubricants.supply import bath_fill as bath_fill, supply_of as supply_of
+    from trbdyn.model.lubricants.supply import rolling_supply_of as rolling_supply_of
     from trbdyn.model.lubricants.supply import replenishment_decline as replenishment_decline
     from trbdyn.model.lubricants.viscosity import Dicke as Dicke, Vogel as Vogel
     from trbdyn.model.lubricants.viscosity import astm_d341 as astm_d341, wooster as wooster

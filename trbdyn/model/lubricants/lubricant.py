@@ -151,7 +151,11 @@ class Lubricant(Model):
         The oil, or the name of one that ships, see `OILS`. viscosity, pressure_coefficient, temperature_coefficient and
         density follow from it and must then not be given.
     temperature_c : float
-        Temperature of the oil (C).
+        Temperature of the oil in the contacts (C).
+    temperature_of : {'ring', 'film', 'supply'}
+        What this temperature was measured on, or is that of: the ring, the films themselves, or the oil that is supplied. It
+        changes no number but the band of the temperature in `trbdyn.uncertainty`: from 3 K below to 10 K above that of the
+        ring, 3 K about that of films, up to 25 K above that of supplied oil.
     viscosity : float
         eta0, dynamic viscosity at ambient pressure (Pa s).
     pressure_coefficient : float
@@ -199,6 +203,7 @@ class Lubricant(Model):
     pressure_coefficient: Annotated[Number, parameter("pressure_coefficient")]
     temperature_coefficient: Annotated[Number, parameter("temperature_coefficient")]
     temperature_c: Annotated[Number, parameter("temperature")]
+    temperature_of: Literal["ring", "film", "supply"] = "ring"
     density: Annotated[Number, parameter("oil_density")] = 860.6
     conductivity: Annotated[Number, parameter("conductivity")] = 0.134
     pressure_law: PressureLaw = "roelands"
