@@ -74,6 +74,19 @@ def test_measurements_are_those_of_the_package() -> None:
     assert {point.source for point in MEASUREMENTS} <= {source.key for source in SOURCES}
 
 
+def weighted(rows: list[dict[str, Any]], key: str = "predicted") -> float:
+    """Mean over bearings of the mean size of the error of each (%)."""
+    names = sorted({row["bearing"] for row in rows})
+    return float(
+        np.mean(
+            [
+                np.mean([100.0 * abs(row[key] / row["measured"] - 1.0) for row in rows if row["bearing"] == name])
+                for name in names
+            ]
+        )
+    )
+
+
 def test_the_summary_follows_from_the_rows(kept: dict[str, Any]) -> None:
     rows, summary = kept["results"], kept["summary"]
     assert not kept["quick"]
@@ -82,15 +95,95 @@ def test_the_summary_follows_from_the_rows(kept: dict[str, Any]) -> None:
         row["low"] - row["reading_error"] <= row["measured"] <= row["high"] + row["reading_error"] for row in rows
     ]
     assert inside == [row["is_inside"] for row in rows]
-    errors = [100.0 * (row["predicted"] / row["measured"] - 1.0) for row in torques if row["speed_rpm"] >= 1000.0]
+    fast = [row for row in torques if row["speed_rpm"] >= 1000.0]
+    errors = [100.0 * (row["predicted"] / row["measured"] - 1.0) for row in fast]
     assert summary["inside"] == pytest.approx(np.mean(inside))
-    assert summary["mean_error"] == pytest.approx(np.mean(np.abs(errors)))
+    assert summary["mean_error"] == pytest.approx(weighted(fast))
+    assert summary["mean_error_slow"] == pytest.approx(weighted([r for r in torques if r["speed_rpm"] < 1000.0]))
     assert summary["max_error"] == pytest.approx(np.max(np.abs(errors)))
     halves = [50.0 * (row["high"] - row["low"]) / row["predicted"] for row in torques]
     assert summary["median_band"] == pytest.approx(np.median(halves))
-    best = min(summary["by_option"], key=lambda name: summary["by_option"][name]["mean_error"])
-    assert summary["best"] == best
-    assert summary["bearings"] >= 4
+    assert (summary["bearings"], summary["torques"]) == (len({row["bearing"] for row in fast}), len(fast))
+    record = json.loads((ROOT / "trbdyn" / "data" / "torque_record.json").read_text(encoding="utf-8"))
+    assert {name: record[name] for name in ("no_drag", "drag_of_the_state")} == summary["record"]
+    assert record["no_drag"]["mean_error"] == pytest.approx(weighted(fast, "no_drag"))
+
+
+def test_the_error_that_is_quoted_leaves_each_bearing_out(kept: dict[str, Any]) -> None:
+    """By brute force: the supply of a bath that the other bearings give, from a straight line between two supplies."""
+    fast = [r for r in kept["results"] if "torque" in r["quantity"] and "by_supply" in r and r["speed_rpm"] >= 1000.0]
+
+    def at(row: dict[str, Any], supply: float) -> float:
+        low, high = row["by_supply"]
+        return float(low + (high - low) * (supply - 0.7) / 0.3) if row["supply"] == "bath" else float(row["predicted"])
+
+    errors = []
+    for name in sorted({row["bearing"] for row in fast}):
+        others = [row for row in fast if row["bearing"] != name]
+        tried = np.linspace(0.5, 1.2, 141)
+        best = min(
+            tried,
+            key=lambda c: weighted([{**row, "predicted": at(row, c)} for row in others if row["supply"] == "bath"]),
+        )
+        errors.append(weighted([{**row, "predicted": at(row, best)} for row in fast if row["bearing"] == name]))
+    assert kept["summary"]["left_out_error"] == pytest.approx(np.mean(errors), rel=1e-6)
+
+
+def test_users_and_validation_have_one_list_of_open_inputs() -> None:
+    from validation.assumptions import DEFAULT, OPTIONS, bands_of, own_bands, scene_of
+    from validation.measured import MEASUREMENTS
+
+    from trbdyn.study import open_inputs
+
+    for point in MEASUREMENTS:
+        scene = scene_of(point, OPTIONS[DEFAULT])
+        own, users = own_bands(point, scene), open_inputs(scene)
+        given = {band.path for band in own}
+        assert list(bands_of(point, scene)) == [*(band for band in users if band.path not in given), *own]
+        paths = {band.path for band in users}
+        wanted = {"lubricant.temperature_c", "effects.supply", "effects.friction.rib_boundary_limit"}
+        assert wanted | {"effects.oil_fill"} <= paths
+        assert ("bearing.roller.profile.a_p" in paths) == (point.bearing != "32216")  # the source gives that one
+        t = scene.lubricant.temperature_c
+        band = next(band for band in users if band.path == "lubricant.temperature_c")
+        assert (band.low, band.high) == (t - 3.0, t + 10.0)
+
+
+def test_a_measured_error_is_told_of_effects_that_were_measured_alone() -> None:
+    from trbdyn.run.torque_laws import record, record_words
+
+    standard = trb.Effects()
+    assert f"{record()['no_drag']['left_out_error']:.0f} %" in record_words(standard)
+    state = record_words(standard.replace(oil_fill="bath"))
+    assert f"{record()['drag_of_the_state']['left_out_error']:.0f} %" in state
+    for changes in (
+        {"oil_fill": 0.2},
+        {"supply": 0.9},
+        {"friction.rib_boundary_limit": 0.1},
+        {"rolling_law": "aihara"},
+    ):
+        assert record_words(standard.replace(changes)) == ""
+
+
+def test_the_default_is_judged_by_formulas_of_makers(kept: dict[str, Any]) -> None:
+    """Kept ratios follow from the formulas of today; starting torque of a 32208 under 2 kN by hand: 1.18 mm x 0.2 x 2 kN."""
+    from validation import makers
+
+    summary = kept["summary"]
+    assert set(summary["formulas"]) == {"aihara", "skf", "palmgren"}
+    assert all(one["low"] < one["median"] < one["high"] for one in summary["formulas"].values())
+    scene = trb.Scene(
+        trb.Bearing.named("32208"), speed_rpm=1.0, axial_load=2000.0, lubricant=trb.lubricants.iso_vg(100, 40.0)
+    )
+    own, maker = makers.starting_torque(scene)
+    assert maker == pytest.approx(0.473, rel=0.01)
+    assert own == pytest.approx(maker, rel=0.3)
+    scene = scene.replace(speed_rpm=1000.0, axial_load=7770.0, lubricant=trb.lubricants.iso_vg(100, 50.0))
+    same = scene.replace({"effects.rolling_law": "aihara", "effects.supply": 1.0})
+    rib = trb.Simulation(same).contacts()
+    speed = 1000.0 * math.pi / 30.0
+    raceways = float(np.sum(rib["power"]) - np.sum(rib["rib_friction"] * rib["rib_sliding_speed"])) / speed
+    assert raceways == pytest.approx(makers.aihara(scene), rel=0.03)
 
 
 def test_the_page_shows_these_rows(kept: dict[str, Any]) -> None:
@@ -117,7 +210,7 @@ def test_the_command(tmp_path: Path, kept: dict[str, Any]) -> None:
     done = subprocess.run(command, capture_output=True, text=True, timeout=500, check=False)
     assert done.returncode == 0, done.stderr
     found = json.loads(path.read_text(encoding="utf-8"))
-    assert {"inside", "mean_error", "max_error", "median_band"} <= set(found["summary"])
+    assert {"inside", "mean_error", "left_out_error", "median_band"} <= set(found["summary"])
     before = {(row["quantity"], row["speed_rpm"], row["radial_load"]): row for row in kept["results"]}
     for row in found["results"]:
         there = before[row["quantity"], row["speed_rpm"], row["radial_load"]]

@@ -208,7 +208,7 @@ class Effects(Model):
     thermal: Flag = True
     thermal_law: Literal["gupta", "aihara"] = "aihara"
     mixed_law: Literal["power", "exponential"] = "power"
-    supply: Annotated[Number, parameter("supply")] | None = None
+    supply: Annotated[Number | None, parameter("supply")] = None
     replenishment: Annotated[Number, unit("1", ge=0, le=1e-6)] = 0.0
     oil_height: Annotated[Number, parameter("oil_height")] = 0.0
     flooded_gaps: Flag = False

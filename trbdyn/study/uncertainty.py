@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final, Unpack
 
 import numpy as np
@@ -93,7 +93,11 @@ class Uncertainty(Displayed):
     shown : tuple of str
         Observables that are printed.
     laws : TorqueLaws or None
-        What the law of rolling resistance leaves open of the torque beside the inputs.
+        What the law of rolling resistance leaves open of the torque beside the inputs; None where a measurement is given.
+    given : mapping or None
+        What was measured: value and standard deviation by observable.
+    effective : float or None
+        As how many draws those that agree with it count (1).
     """
 
     spreads: dict[str, Spread]
@@ -103,6 +107,8 @@ class Uncertainty(Displayed):
     data: xarray.Dataset
     shown: tuple[str, ...]
     laws: TorqueLaws | None = None
+    given: Mapping[str, tuple[float, float]] | None = None
+    effective: float | None = None
 
     def __getitem__(self, name: str) -> Spread:
         return self.spreads[name]
@@ -140,6 +146,9 @@ class Uncertainty(Displayed):
         return Shown(title, tuple(rows), head, notes)
 
     def _refusals(self) -> str:
+        if self.given is not None:
+            known = ", ".join(f"{name} = {value:g} ± {error:g}" for name, (value, error) in self.given.items())
+            return f", given {known}: they count as {self.effective:.0f}"
         if not self.refused:
             return ""
         return f"; {len(self.refused)} more could not be run, so that the bands leave them out: {self.refused[0]}"
@@ -153,6 +162,7 @@ def uncertainty(
     seed: int = 0,
     options: RunOptions | None = None,
     quantities: Sequence[str] | None = None,
+    given: Mapping[str, tuple[float, float]] | None = None,
     **how: Unpack[Running],
 ) -> Uncertainty:
     """The band of every observable that follows from the bands of the inputs.
@@ -177,6 +187,10 @@ def uncertainty(
         How each draw is run; 5 turns of the shaft with 'fast' by default.
     quantities : sequence of str, optional
         Observables that are printed; by default torque, largest pressure, films and the size of the whirl.
+    given : mapping of str to tuple, optional
+        What was measured of this bearing: observable, its value and the standard deviation of the measurement in the same unit,
+        ``{"torque": (2.95, 0.15)}``. Draws then count by how well they agree with it (Bayes' rule with a normal error), in all
+        bands and means; shares are left out.
     **how
         Folder, executor, workers and progress bar of the runs: `trbdyn.study.Running`.
 
@@ -188,8 +202,8 @@ def uncertainty(
     Raises
     ------
     InputError
-        If a band is wrong or names no input, there are none, a quantity is unknown, or so few draws can be run that they make no
-        band.
+        If a band is wrong or names no input, there are none, a quantity is unknown, or so few draws can be run, or agree with
+        what was measured, that they make no band.
 
     Examples
     --------
@@ -214,7 +228,55 @@ def uncertainty(
     if all(case.scene is None for case in made[1:]):
         raise InputError.of("bands", drawn[0].path, f"no draw can be built; the first: {made[1].error}")
     data = run_study(Study(tuple(made), (), "uncertainty"), **(Running(executor="threads") | how))
-    return _gathered(data, drawn, unit, quantities, torque_laws(subject))
+    found = _gathered(data, drawn, unit, quantities, torque_laws(subject))
+    return found if given is None else updated(found, given)
+
+
+def updated(prior: Uncertainty, given: Mapping[str, tuple[float, float]]) -> Uncertainty:
+    """The bands with what was measured, by the weights of the draws; `uncertainty` says more.
+
+    Raises
+    ------
+    InputError
+        If an observable is unknown, an error is not above 0, or the draws that agree count as fewer than 8 (Kish).
+    """
+    ran = np.array([text == "done" for text in prior.data["status"].values])[1:]
+
+    def drawn(name: str) -> Array:
+        return np.asarray(prior.data[name].values, dtype=float)[1:][ran]
+
+    log_weight = np.zeros(prior.draws)
+    for name, pair in given.items():
+        if name not in prior.spreads:
+            raise InputError.of(("given", name), pair, unknown_name(name, prior.spreads))
+        value, error = (float(number) for number in pair)
+        if not error > 0.0:
+            raise InputError.of(("given", name), pair, "must be a value and its standard deviation, > 0")
+        log_weight -= 0.5 * ((drawn(name) - value) / error) ** 2
+    weight = np.exp(log_weight - log_weight.max())
+    weight /= weight.sum()
+    count = float(1.0 / np.sum(weight**2))
+    if count < FEWEST:
+        raise InputError.of(
+            "given",
+            dict(given),
+            f"the draws that agree with it count as {count:.1f}, of {prior.draws}; {FEWEST} are needed: take more samples, or "
+            "look at the inputs, of which none may give what was measured",
+        )
+    held = share_held(round(count))
+    ends = (0.5 - 0.5 * held, 0.5 + 0.5 * held)
+    spreads = {}
+    for name, spread in prior.spreads.items():
+        values = drawn(name)
+        low, high = (float(np.interp(end, *_distribution(values, weight))) for end in ends)
+        spreads[name] = replace(spread, mean=float(weight @ values), low=low, high=high, shares={}, rest=1.0, held=held)
+    return replace(prior, spreads=spreads, given=dict(given), effective=count, laws=None)
+
+
+def _distribution(values: Array, weight: Array) -> tuple[Array, Array]:
+    """Cumulated weights, each value in the middle of its own, and the values in order."""
+    order = np.argsort(values)
+    return np.cumsum(weight[order]) - 0.5 * weight[order], values[order]
 
 
 def checked_bands(bands: Mapping[str, tuple[float, float]] | Sequence[Band]) -> tuple[Band, ...]:
