@@ -2,8 +2,9 @@
 
     python benchmarks/preset_bias.py [--quick] [--json FILE] [--make-table [FILE]]
 
-A tight run (a tenth of the tolerances of 'reference', every force exact) goes on from the stored states of work_precision.py,
-with the default effects and 8 Gauss nodes along a contact. Every 5 ms each preset starts from its state; after 4 ms, in which
+A tight run (of `bdf`, a tenth of the tolerances of 'reference', every force exact) goes on from the stored states of
+work_precision.py, with the default effects and 8 Gauss nodes along a contact. Every 5 ms each preset starts from its state;
+after 4 ms, in which
 vibrations come to the size that the preset leaves them, both are read over the next 5 ms, which makes 6 pairs of windows a
 state. The bias is the mean difference over the mean of the tight windows, with its 95 % confidence interval. --make-table
 writes them into the package's table, from where `trbdyn.run.estimate` and the summaries of runs take them. Four minutes of
@@ -35,6 +36,7 @@ from trbdyn.run.simulation import State
 Array = NDArray[np.float64]
 
 TIGHT: Final[dict[str, Any]] = {
+    "integrator": "bdf",
     "accuracy": "reference",
     "rings_share": 0.0,
     **{name: 0.1 * value for name, value in ACCURACY["reference"].model_dump().items()},
@@ -62,6 +64,7 @@ READ: Final = {
 COLUMNS = {
     "case": "text: scene",
     "preset": "text: preset",
+    "integrator": "text: integrator that the preset runs the scene with",
     "pairs": "1: pairs of windows",
     **{f"bias_{name}": f"1: relative difference from the tight run: {text}" for name, text in READ.items()},
     **{f"bias_{name}_half_width": "1: half its 95 % confidence interval" for name in READ},
@@ -122,7 +125,8 @@ def run(report: common.Report, cases: Sequence[str], n_states: int, count: int) 
             for preset, rows in found.items():
                 rows += [window(case, begin, preset) for begin in begins]
         for preset, rows in found.items():
-            row: dict[str, Any] = {"case": name, "preset": preset, "pairs": len(rows)}
+            used = Simulation(case.scene, accuracy=preset).options.integrator
+            row: dict[str, Any] = {"case": name, "preset": preset, "integrator": used, "pairs": len(rows)}
             for key in READ:
                 off = measure.bias(np.array([one[key] for one in rows]), np.array([one[key] for one in tight]))
                 row |= {f"bias_{key}": off.value, f"bias_{key}_half_width": off.half_width}
@@ -137,7 +141,8 @@ def write_table(report: common.Report, path: Path) -> None:
         values = {name: float(f"{value:.4g}") for name, value in row.items() if name.startswith("bias_")}
         preset = table["presets_of_scenes"].setdefault(row["case"], {}).setdefault(row["preset"], {})
         tolerances = ACCURACY[row["preset"]].model_dump()
-        preset["bias"] = values | {"tolerances": tolerances, "effects": "standard", "quick": report.options.quick}
+        said = {"effects": "standard", "integrator": row["integrator"], "quick": report.options.quick}
+        preset["bias"] = values | {"tolerances": tolerances} | said
     path.write_text(json.dumps(common.plain(table), indent=1, allow_nan=False) + "\n", encoding="utf-8")
     print(f"wrote {path}")
 

@@ -183,14 +183,14 @@ def method_settings(method: str) -> dict[str, Any]:
     if method == "erk":
         return {"integrator": "erk"}
     exact = {"rings_share": 0.0} if method.endswith("exact") else {}
-    return {"max_order": int(method.removeprefix("bdf").removesuffix("exact"))} | exact
+    return {"integrator": "bdf", "max_order": int(method.removeprefix("bdf").removesuffix("exact"))} | exact
 
 
 def sweep(report: common.Report, references: measure.References, plan: Plan) -> None:
     """Tolerances, methods and presets on a case."""
     case = references.case
     points: list[tuple[str, str, str | None, float, dict[str, Any]]] = [
-        (f"preset {name}", "bdf2", name, measure.preset_scale(name), settings)
+        (f"preset {name}", "bdf2", name, measure.preset_scale(name), settings | {"integrator": "bdf"})
         for name, settings in measure.preset_settings().items()
     ]
     fewer = case.name in plan.fewer

@@ -128,9 +128,13 @@ class Simulation:
     ) -> None:
         """Bearings that are simulated together, and for each of them a motion (K, C): knot time, then value and slope of each
         channel. It may come with four numbers: after the last knot the last period repeats (0: everything stays); a time, and
-        the angles of shaft and outer ring then (without them they are zero at the first knot). settings: integrator ('bdf',
-        'erk', 'multirate') and those of setting_table()."""
+        the angles of shaft and outer ring then (without them they are zero at the first knot). settings: integrator ('auto',
+        'multirate', 'bdf', 'erk') and those of setting_table()."""
     time: float
+    integrator: str
+    """The one that is used."""
+    reason: str
+    """Why it is not the first choice, where none was asked for; or empty."""
     row_length: int
     def run(
         self, times: Array, records: Array, max_steps: int, stop_after: float = ..., beside: bool = ...

@@ -20,6 +20,7 @@ enum { TRB_MOST_PAIRS = 16, TRB_MOST_BODIES = 6, TRB_MOST_MOVING_RINGS = 2 };
 #define TRB_COUNTERS(X) \
   X(force_evaluations,    "evaluations of all forces") \
   X(tangent_rollers,      "rollers whose forces of raceways and ribs were taken from their tangents") \
+  X(exact_rollers,        "rollers whose forces of raceways and ribs were evaluated by the integrator") \
   X(raceway_nodes,        "nodes of loaded raceway contacts") \
   X(raceway_culled,       "raceway contacts without interference, left out") \
   X(film_nodes,           "nodes whose film was evaluated") \

@@ -90,20 +90,6 @@ double trb_fast_gap_left(const trb_dynamics *d, int fast, int roller, const doub
   return trb_bound_left(&pair->bounds[roller], pair->arms, deformed, y + trb_state_roller(d->system, roller), part_of(d, pair, y));
 }
 
-int trb_fast_clear_within(const trb_dynamics *d, int fast, int roller, const double *y, const double *of_roller, const double *of_hub)
-{
-  const trb_fast_pair *pair = &d->fast[fast];
-  const trb_bound     *bound = &pair->bounds[roller];
-  const double        *of_body = of_hub + d->system->bodies[pair->pair->b].first - trb_state_hub(d->system);
-  double               ways[TRB_N_GAPS] = {0};
-  add_ways(bound, pair->arms, y + trb_state_roller(d->system, roller), part_of(d, pair, y), ways);
-  for (int g = 0; g < TRB_N_GAPS; g++) {
-    for (int i = 0; i < TRB_PLACE_OF_ROLLER; i++) ways[g] += pair->arms[g].roller[i] * of_roller[i];
-    for (int i = 0; i < TRB_PLACE_OF_BODY; i++) ways[g] += pair->arms[g].body[i] * of_body[i];
-  }
-  return holds(bound, ways);
-}
-
 void trb_fast_apart(const trb_dynamics *d, const double *y, unsigned *apart)
 {
   const trb_model *m = d->model;

@@ -22,9 +22,6 @@ unsigned trb_fast_near(const trb_dynamics *d, int roller, const double *y);
 void trb_fast_apart(const trb_dynamics *d, const double *y, unsigned *apart);
 /* Lower bound of the gap of a roller that is left in a fast pair at a state, m; not above 0: it may touch. */
 double trb_fast_gap_left(const trb_dynamics *d, int fast, int roller, const double *y);
-/* Whether a roller is proven to touch no rigid body in a fast pair as long as coordinates are within ways of those of a state: of its place, and of the
- * hub. */
-int trb_fast_clear_within(const trb_dynamics *d, int fast, int roller, const double *y, const double *of_roller, const double *of_hub);
 /* A fast pair of a roller whose pose is kept (see trb_pair_touch); what is proven of it is kept. */
 trb_gaps trb_fast_touch(trb_dynamics *d, int fast, int roller, const double *y, trb_load *load, trb_slopes *slopes, trb_detail *detail);
 /* Adds the loads of the pairs in which a roller is near (d->near) to its flow and to the loads of the hub's bodies. */

@@ -314,6 +314,7 @@ static int place(trb_dynamics *d, const trb_approximation *instead, double time,
     if (!follows || d->near[j] != 0) trb_dynamics_pose_roller(d, j, own);
   }
   d->work->counters.tangent_rollers += n - n_exact;
+  d->work->counters.exact_rollers += n_exact;
   return n_exact;
 }
 
@@ -368,6 +369,7 @@ void trb_rhs_alone(trb_dynamics *d, const trb_approximation *instead, double tim
     return;
   }
   trb_dynamics_pose_roller(d, j, y_roller);
+  d->work->counters.exact_rollers++;
   d->exact[0] = j;
   evaluate_slow(d, 1);
   take(d, instead, j, y_roller);

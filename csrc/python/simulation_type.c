@@ -10,7 +10,7 @@ static int read_settings(PyObject *dictionary, trb_settings *settings, const cha
   double    *values = (double *)settings;
   PyObject  *key, *value;
   Py_ssize_t position = 0;
-  *kind = "bdf";
+  *kind = "auto";
   for (int i = 0; i < TRB_N_SETTINGS; i++) values[i] = trb_setting_table[i].standard;
   while (PyDict_Next(dictionary, &position, &key, &value)) {
     const char *name = PyUnicode_AsUTF8AndSize(key, NULL);
@@ -241,6 +241,19 @@ static PyObject *get_row_length(PyObject *object, void *closure)
   return PyLong_FromLong(trb_simulation_row(((simulation_object *)object)->simulation));
 }
 
+static PyObject *get_integrator(PyObject *object, void *closure)
+{
+  (void)closure;
+  return PyUnicode_FromString(((simulation_object *)object)->simulation->integrator.kind->name);
+}
+
+static PyObject *get_reason(PyObject *object, void *closure)
+{
+  const char *reason = ((simulation_object *)object)->simulation->integrator.reason;
+  (void)closure;
+  return PyUnicode_FromString(reason == NULL ? "" : reason);
+}
+
 static PyMethodDef methods[] = {
     {"run", run, METH_VARARGS,
      "run(times, records, max_steps, stop_after=inf): integrate and write one row for each time; gives (rows, steps)."},
@@ -266,6 +279,8 @@ static PyMethodDef methods[] = {
 
 static PyGetSetDef properties[] = {
     {"time", get_time, NULL, "end of the last step, s", NULL},
+    {"integrator", get_integrator, NULL, "name of the integrator that is used", NULL},
+    {"reason", get_reason, NULL, "why that is not the first choice, where none was asked for; or empty", NULL},
     {"row_length", get_row_length, NULL, "length of a row of records, with its peaks if they are kept", NULL},
     {NULL, NULL, NULL, NULL, NULL},
 };

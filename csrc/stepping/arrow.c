@@ -64,6 +64,7 @@ trb_status trb_arrow_factors_create(int n_rollers, int hub_width, int variant, t
   *factors = NULL;
   if (f != NULL) {
     f->rollers = trb_memory_zeros(&f->memory, n, sizeof *f->rollers);
+    f->held = trb_memory_zeros(&f->memory, n, sizeof *f->held);
     f->borders = trb_memory_zeros(&f->memory, n, sizeof *f->borders);
     f->hub.schur = trb_memory_zeros(&f->memory, width * (size_t)room, sizeof *f->hub.schur);
     f->hub.inverse = trb_memory_zeros(&f->memory, width * (size_t)room, sizeof *f->hub.inverse);
@@ -104,7 +105,13 @@ void trb_arrow_factors_free(trb_arrow_factors *factors)
   free(factors);
 }
 
-int trb_arrow_factor(const trb_arrow *arrow, double gamma, const int *chosen, int n, trb_arrow_factors *f)
+int trb_arrow_factor_alone(const trb_arrow *arrow, double gamma, int roller, trb_arrow_factors *f)
+{
+  f->held[roller] = f->kernels->factor(&arrow->rollers[roller], gamma, &f->rollers[roller]) ? gamma : 0.0;
+  return f->held[roller] > 0.0;
+}
+
+int trb_arrow_factor_again(const trb_arrow *arrow, double gamma, const int *chosen, int n, trb_arrow_factors *f)
 {
   const trb_hub_factor *hub = &f->hub;
   f->gamma = 0.0;
@@ -112,24 +119,32 @@ int trb_arrow_factor(const trb_arrow *arrow, double gamma, const int *chosen, in
   else
     for (int c = 0; c < hub->width; c++)
       for (int i = 0; i < hub->room; i++) hub->schur[c * hub->room + i] = (double)(i == c) - gamma * arrow->hub[c * hub->room + i];
-  for (int k = 0; k < n; k++)
-    if (!f->kernels->factor(&arrow->rollers[chosen == NULL ? k : chosen[k]], gamma, &f->rollers[k])) return 0;
+  for (int k = 0; k < n; k++) {
+    const int j = chosen == NULL ? k : chosen[k];
+    if (f->held[j] != gamma && !trb_arrow_factor_alone(arrow, gamma, j, f)) return 0;
+  }
   for (int k = 0; k < n; k++) {
     const int               j = chosen == NULL ? k : chosen[k];
     const trb_arrow_border *border = &arrow->borders[j];
-    f->borders[k].parts = border->parts;
+    f->borders[j].parts = border->parts;
     if (border->parts == 0U) continue;
     if (f->followers != NULL) border = trb_followers_border(f->followers, arrow, gamma, j);
-    f->kernels->border(border, gamma, &f->rollers[k], &f->borders[k], hub);
+    f->kernels->border(border, gamma, &f->rollers[j], &f->borders[j], hub);
   }
   if (!f->kernels->invert_hub(hub)) return 0;
   f->gamma = gamma;
   return 1;
 }
 
+int trb_arrow_factor(const trb_arrow *arrow, double gamma, const int *chosen, int n, trb_arrow_factors *f)
+{
+  for (int k = 0; k < n; k++) f->held[chosen == NULL ? k : chosen[k]] = 0.0;
+  return trb_arrow_factor_again(arrow, gamma, chosen, n, f);
+}
+
 void trb_arrow_solve(const trb_arrow_factors *f, double *x)
 {
   if (f->followers != NULL) trb_followers_before(f->followers, f->kernels, f->borders, f->n, x);
-  f->kernels->solve(f->rollers, f->borders, f->n, &f->hub, x);
+  f->kernels->solve(f->rollers, f->borders, NULL, f->n, &f->hub, x);
   if (f->followers != NULL) trb_followers_after(f->followers, f->n, x);
 }

@@ -11,9 +11,10 @@
 typedef struct trb_arrow_factors {
   const trb_block_kernels *kernels;
   int                      n;
-  double                   gamma; /* of the system that was factored; 0: none was */
-  trb_arrow_factor_block  *rollers;
-  trb_arrow_factor_border *borders;
+  double                   gamma;   /* of the system that was factored; 0: none was */
+  trb_arrow_factor_block  *rollers; /* of each */
+  double                  *held;    /* of each: gamma of its inverse; 0: there is none */
+  trb_arrow_factor_border *borders; /* of each */
   trb_hub_factor           hub;
   trb_followers           *followers; /* entries of the hub that are eliminated first; NULL: none */
   trb_memory               memory;    /* of all arrays */
@@ -30,8 +31,12 @@ trb_status trb_arrow_factors_create(int n_rollers, int hub_width, int variant, t
 /* Entries of the hub whose rate is another one times a constant (stepping/followers.h): two for each, its own and that of the other one. */
 trb_status trb_arrow_factors_follow(trb_arrow_factors *factors, int n, const int (*entries)[2], trb_message *message);
 void       trb_arrow_factors_free(trb_arrow_factors *factors);
-/* Of I - gamma J with n chosen rollers (NULL: the first n), which become the first ones of the system; 1 if it is regular. */
+/* Of I - gamma J with n chosen rollers (NULL: the first n); 1 if it is regular. */
 int trb_arrow_factor(const trb_arrow *arrow, double gamma, const int *chosen, int n, trb_arrow_factors *factors);
+/* The same where no roller's block has changed since its inverse was found: inverses for this gamma are used again. */
+int trb_arrow_factor_again(const trb_arrow *arrow, double gamma, const int *chosen, int n, trb_arrow_factors *factors);
+/* The inverse of a roller's block alone, likewise. */
+int trb_arrow_factor_alone(const trb_arrow *arrow, double gamma, int roller, trb_arrow_factors *factors);
 /* x: rollers then hub, overwritten by the solution; see trb_block_kernels. */
 void trb_arrow_solve(const trb_arrow_factors *factors, double *x);
 

@@ -307,47 +307,57 @@ static inline void solve_roller(const trb_arrow_factor_block *own, double *z)
   z[TRB_NR] = covered;
 }
 
-static void solve_usual(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, int n, usual_columns inverse,
-                        double *restrict x)
+static inline int chosen_one(const int *chosen, int k) { return chosen == NULL ? k : chosen[k]; }
+
+static void solve_usual(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, const int *chosen, int n,
+                        usual_columns inverse, double *restrict x)
 {
   double *const y = x + n * TRB_NR;
   double        right[TRB_HUB_USUAL];
   memcpy(right, y, sizeof right);
-  for (int j = 0; j < n; j++) {
-    double *const z = x + j * TRB_NR;
+  for (int k = 0; k < n; k++) {
+    const int     j = chosen_one(chosen, k);
+    double *const z = x + k * TRB_NR;
     solve_roller(&own[j], z);
     if (border[j].parts != 0U) add_product((usual_columns)border[j].from, TRB_NR, z, -1.0, right);
   }
   set_product(inverse, TRB_HUB_USUAL, right, 1.0, y);
   memcpy(right, y, sizeof right);
-  for (int j = 0; j < n; j++)
-    if (border[j].parts != 0U) add_product((usual_columns)border[j].solved, TRB_HUB_USUAL, right, -1.0, x + j * TRB_NR);
+  for (int k = 0; k < n; k++) {
+    const int j = chosen_one(chosen, k);
+    if (border[j].parts != 0U) add_product((usual_columns)border[j].solved, TRB_HUB_USUAL, right, -1.0, x + k * TRB_NR);
+  }
 }
 
 /* The same for any width. right: of the hub's equations; found: its solution. */
-static void solve_wide(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, int n, const trb_hub_factor *hub,
-                       double *restrict x)
+static void solve_wide(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, const int *chosen, int n,
+                       const trb_hub_factor *hub, double *restrict x)
 {
   double *const y = x + n * TRB_NR, *const right = hub->scratch, *const found = right + hub->room;
   const int width = hub->width, room = hub->room;
   memset(right, 0, 2 * (size_t)room * sizeof *right);
   memcpy(right, y, (size_t)width * sizeof *right);
-  for (int j = 0; j < n; j++) {
-    solve_roller(&own[j], x + j * TRB_NR);
+  for (int k = 0; k < n; k++) {
+    const int j = chosen_one(chosen, k);
+    solve_roller(&own[j], x + k * TRB_NR);
     EACH_PART(part, border[j].parts)
-    add_part(border[j].from + part * TRB_NP, room, TRB_NR, x + j * TRB_NR, -1.0, right + part * TRB_NP);
+    add_part(border[j].from + part * TRB_NP, room, TRB_NR, x + k * TRB_NR, -1.0, right + part * TRB_NP);
   }
   for (int part = 0; part < room; part += TRB_NP) add_part(hub->inverse + part, room, width, right, 1.0, found + part);
   memcpy(y, found, (size_t)width * sizeof *y);
-  for (int j = 0; j < n; j++) EACH_PART(part, border[j].parts)
-  add_product((usual_columns)(border[j].solved + part * TRB_NP * TRB_NP), part_size(width, part), found + part * TRB_NP, -1.0,
-              x + j * TRB_NR);
+  for (int k = 0; k < n; k++) {
+    const int j = chosen_one(chosen, k);
+    EACH_PART(part, border[j].parts)
+    add_product((usual_columns)(border[j].solved + part * TRB_NP * TRB_NP), part_size(width, part), found + part * TRB_NP, -1.0,
+                x + k * TRB_NR);
+  }
 }
 
-static void solve(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, int n, const trb_hub_factor *hub, double *x)
+static void solve(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, const int *chosen, int n,
+                  const trb_hub_factor *hub, double *x)
 {
-  if (hub->width == TRB_HUB_USUAL) solve_usual(own, border, n, (usual_columns)hub->inverse, x);
-  else solve_wide(own, border, n, hub, x);
+  if (hub->width == TRB_HUB_USUAL) solve_usual(own, border, chosen, n, (usual_columns)hub->inverse, x);
+  else solve_wide(own, border, chosen, n, hub, x);
 }
 
 static void add(const double *columns, int stride, int n, const double *x, double *to) { add_part(columns, stride, n, x, 1.0, to); }

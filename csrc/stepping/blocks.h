@@ -60,9 +60,10 @@ typedef struct trb_block_kernels {
                  const trb_hub_factor *hub);
   /* Inverse of the Schur complement; 0: singular. */
   int (*invert_hub)(const trb_hub_factor *hub);
-  /* x: rollers then hub, overwritten by the solution. The entry after the last roller is read and written back: it must be there even if
-   * the hub has no entries. */
-  void (*solve)(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, int n, const trb_hub_factor *hub, double *x);
+  /* x: n chosen rollers (NULL: the first n) then hub, overwritten by the solution. The entry after the last roller is read and written back: it must be
+   * there even if the hub has no entries. */
+  void (*solve)(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, const int *chosen, int n,
+                const trb_hub_factor *hub, double *x);
   /* Adds columns, `stride` apart, times a vector of n to TRB_NP entries. */
   void (*add)(const double *columns, int stride, int n, const double *x, double *to);
   /* Step from an origin to a roller's state and an angle; gives the sum of squares of step times per. It reads TRB_NP entries of

@@ -35,23 +35,18 @@ void trb_course_predict(const trb_course *c, double p[3][TRB_COURSE_ROOM])
   }
 }
 
-void trb_course_try(const trb_course *c, double end, double p[3][TRB_COURSE_ROOM], const double *e, trb_course_step *to)
+void trb_course_accept(trb_course *c, double end, double p[3][TRB_COURSE_ROOM], const double *e, int keep)
 {
+  trb_course_step *to = &c->now;
+  if (keep) c->past[c->n_past++ % TRB_COURSE_KEPT] = *to;
+  else c->n_past = 0;
   for (int i = 0; i < c->n; i++) {
     to->z[0][i] = p[0][i] + e[i];
     to->z[1][i] = p[1][i] + trb_course_l1 * e[i];
     to->z[2][i] = p[2][i] + trb_course_l2 * e[i];
   }
-  to->scale = c->now.scale;
-  to->begin = c->now.end;
+  to->begin = to->end;
   to->end = end;
-}
-
-void trb_course_accept(trb_course *c, double end, double p[3][TRB_COURSE_ROOM], const double *e, int keep)
-{
-  if (keep) c->past[c->n_past++ % TRB_COURSE_KEPT] = c->now;
-  else c->n_past = 0;
-  trb_course_try(c, end, p, e, &c->now);
   c->wait--;
 }
 
@@ -72,29 +67,11 @@ static const trb_course_step *find(const trb_course *c, double time)
   return step_of(c, back);
 }
 
-void trb_course_step_at(const trb_course_step *in, double time, int n, double *to)
+void trb_course_at(const trb_course *c, double time, int n, double *to)
 {
-  const double s = (time - in->end) / in->scale;
+  const trb_course_step *in = find(c, time);
+  const double           s = (time - in->end) / in->scale;
   for (int i = 0; i < n; i++) to[i] = in->z[0][i] + s * (in->z[1][i] + s * in->z[2][i]);
-}
-
-void trb_course_at(const trb_course *c, double time, int n, double *to) { trb_course_step_at(find(c, time), time, n, to); }
-
-void trb_course_step_ways(const trb_course_step *in, double from, double to, int n, const double *value, double *ways)
-{
-  const double s = (fmax(from, in->begin) - in->end) / in->scale, e = (fmin(to, in->end) - in->end) / in->scale;
-  /* a parabola leaves the line between its ends by a quarter of its square part at most */
-  for (int i = 0; i < n; i++) {
-    const double first = in->z[0][i] + s * (in->z[1][i] + s * in->z[2][i]), last = in->z[0][i] + e * (in->z[1][i] + e * in->z[2][i]);
-    const double chord = trb_max(fabs(first - value[i]), fabs(last - value[i])), way = chord + 0.25 * (e - s) * (e - s) * fabs(in->z[2][i]);
-    ways[i] = trb_max(ways[i], way);
-  }
-}
-
-void trb_course_ways(const trb_course *c, double from, double to, int n, const double *value, double *ways)
-{
-  for (int back = 0; back <= oldest(c) && step_of(c, back)->end > from; back++)
-    if (step_of(c, back)->begin < to) trb_course_step_ways(step_of(c, back), from, to, n, value, ways);
 }
 
 void trb_course_back(trb_course *c, double time, double step)

@@ -44,17 +44,10 @@ void trb_course_begin(trb_course *c, double time, double step, const double *y, 
 void trb_course_rescale(trb_course *c, double step);
 /* A prediction for the end of the next step. */
 void trb_course_predict(const trb_course *c, double p[3][TRB_COURSE_ROOM]);
-/* The step that ends at a time with a prediction and e, without taking it. */
-void trb_course_try(const trb_course *c, double end, double p[3][TRB_COURSE_ROOM], const double *e, trb_course_step *to);
-/* Takes it; keep: the one before is kept. */
+/* Takes the step that ends at a time with a prediction and e; keep: the one before is kept. */
 void trb_course_accept(trb_course *c, double end, double p[3][TRB_COURSE_ROOM], const double *e, int keep);
-/* Values of the first n entries at a time of a step, or of the steps that are there. */
-void trb_course_step_at(const trb_course_step *step, double time, int n, double *to);
+/* Values of the first n entries at a time of the steps that are there. */
 void trb_course_at(const trb_course *c, double time, int n, double *to);
-/* By how much each of the first n entries differs from a value at a time of a step between two times, at most, or of the steps that are there; it takes the
- * place of ways where it is larger. */
-void trb_course_step_ways(const trb_course_step *step, double from, double to, int n, const double *value, double *ways);
-void trb_course_ways(const trb_course *c, double from, double to, int n, const double *value, double *ways);
 /* Takes the body back to a time of the steps that are there; the next step has the length given. */
 void trb_course_back(trb_course *c, double time, double step);
 /* Steps that end after a time. */

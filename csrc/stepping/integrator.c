@@ -13,6 +13,12 @@ const trb_setting_info trb_setting_table[TRB_N_SETTINGS] = {
 const trb_integrator_kind *const trb_integrator_kinds[] = {&trb_integrator_bdf, &trb_integrator_erk, &trb_integrator_multirate};
 const int                        trb_n_integrator_kinds = (int)(sizeof trb_integrator_kinds / sizeof trb_integrator_kinds[0]);
 
+void trb_integrator_choose(trb_integrator *it)
+{
+  it->reason = trb_integrator_multirate.refuses(it);
+  it->kind = it->reason == NULL ? &trb_integrator_multirate : &trb_integrator_bdf;
+}
+
 /* Absolute tolerances of velocities are at most this times the relative tolerance times the mean rolling speed. */
 static const double slow_share = 10.0;
 

@@ -65,6 +65,8 @@ typedef struct trb_integrator trb_integrator;
 typedef struct trb_integrator_kind {
   const char *name;
   const char *text;
+  /* why a simulation that is open has to be integrated by another method; NULL: it has not. NULL: this one takes all */
+  const char *(*refuses)(const trb_integrator *it);
   trb_status (*create)(trb_integrator *it, trb_message *message);
   void (*free)(trb_integrator *it);
   /* start (again) at it->time, it->y */
@@ -87,6 +89,7 @@ typedef struct trb_member {
 
 struct trb_integrator {
   const trb_integrator_kind *kind;
+  const char                *reason; /* why it is not the first choice, where none was asked for; NULL: it is, or it was asked for */
   const trb_assembly        *assembly;
   trb_member                 members[TRB_MOST_MEMBERS];
   const char                *variant; /* kernel variant */
@@ -109,6 +112,9 @@ enum { TRB_SETUP_EVERY = 20, TRB_JACOBIAN_EVERY = 10 };
 extern const trb_integrator_kind        trb_integrator_bdf, trb_integrator_erk, trb_integrator_multirate;
 extern const trb_integrator_kind *const trb_integrator_kinds[];
 extern const int                        trb_n_integrator_kinds;
+
+/* Takes the kind where none was asked for: steps of each body, or BDF of all bodies together where that cannot be. */
+void trb_integrator_choose(trb_integrator *it);
 
 /* Tolerances of every entry at the present time. */
 void trb_integrator_set_tolerances(trb_integrator *it);

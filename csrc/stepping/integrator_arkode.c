@@ -134,4 +134,4 @@ static int erk_worst(trb_integrator *it)
 }
 
 const trb_integrator_kind trb_integrator_erk = {
-    "erk", "explicit Runge-Kutta of ARKODE", erk_create, erk_free, erk_restart, erk_step, erk_interpolate, read_totals, erk_worst};
+    "erk", "explicit Runge-Kutta of ARKODE", NULL, erk_create, erk_free, erk_restart, erk_step, erk_interpolate, read_totals, erk_worst};

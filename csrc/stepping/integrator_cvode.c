@@ -243,8 +243,8 @@ static int bdf_worst(trb_integrator *it)
   return trb_integrator_worst(it, N_VGetArrayPointer(self->scratch));
 }
 
-const trb_integrator_kind trb_integrator_bdf = {"bdf",           "backward differentiation of CVODE with the structured Jacobian",
-                                                bdf_create,      bdf_free,
-                                                bdf_restart,     bdf_step,
-                                                bdf_interpolate, read_totals,
-                                                bdf_worst};
+const trb_integrator_kind trb_integrator_bdf = {"bdf",       "backward differentiation of CVODE with the structured Jacobian",
+                                                NULL,        bdf_create,
+                                                bdf_free,    bdf_restart,
+                                                bdf_step,    bdf_interpolate,
+                                                read_totals, bdf_worst};

@@ -161,7 +161,6 @@ static trb_status multirate_step(trb_integrator *it, trb_message *message)
   for (int i = 0; i < most; i++) {
     trb_team   team = hub_team(s);
     double     end = end_of(it, &team), error;
-    int        touches = 0;
     trb_status status = lead(it, &end, message);
     if (status != TRB_OK) return status;
     const double step = end - it->time;
@@ -173,9 +172,9 @@ static trb_status multirate_step(trb_integrator *it, trb_message *message)
       if (status != TRB_OK) return status;
       continue;
     }
-    if (trb_multirate_join(it, end, &touches) > 0) {
+    if (trb_multirate_join(it, end) > 0) {
       team = hub_team(s);
-      if (touches) set_step(s, &team, 0.5 * step);
+      set_step(s, &team, 0.5 * step);
       continue;
     }
     accept(it, &team, end, error);
@@ -196,7 +195,8 @@ static trb_status multirate_restart(trb_integrator *it, trb_message *message)
   trb_dynamics     *d = it->members[0].dynamics;
   (void)message;
   trb_tangents_forget(s->jacobian->tangents);
-  s->has_jacobian = s->has_factors = 0;
+  s->has_jacobian = s->has_factors = s->n_joined = 0;
+  memset(s->factors->held, 0, (size_t)s->n_rollers * sizeof *s->factors->held);
   s->count.restarts++;
   memcpy(s->y, it->y, (size_t)it->n * sizeof(double));
   trb_rhs_rollers(d, NULL, it->time, s->y, d->everyone, s->n_rollers, s->rates);
@@ -228,8 +228,7 @@ static trb_status multirate_restart(trb_integrator *it, trb_message *message)
   return TRB_OK;
 }
 
-/* Why a system has to be integrated by another method; NULL: it has not. */
-static const char *refused(const trb_integrator *it)
+static const char *multirate_refuses(const trb_integrator *it)
 {
   const trb_system   *system = &it->assembly->members[0];
   const trb_dynamics *d = it->members[0].dynamics;
@@ -252,7 +251,7 @@ static const char *refused(const trb_integrator *it)
 static trb_status multirate_create(trb_integrator *it, trb_message *message)
 {
   const trb_system *system = &it->assembly->members[0];
-  const char       *reason = refused(it);
+  const char       *reason = multirate_refuses(it);
   if (reason != NULL) return trb_fail(message, TRB_ERR_INPUT, "integrator = 'multirate': %s; choose integrator = 'bdf'", reason);
   trb_multirate *s = calloc(1, sizeof *s);
   if (s == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the integrator");
@@ -266,6 +265,7 @@ static trb_status multirate_create(trb_integrator *it, trb_message *message)
   s->count.last_order = 2.0;
   s->movers = trb_memory_zeros(&s->memory, (size_t)s->n_rollers + 1, sizeof *s->movers);
   s->together = trb_memory_zeros(&s->memory, (size_t)s->n_rollers, sizeof *s->together);
+  s->joined = trb_memory_zeros(&s->memory, (size_t)s->n_rollers, sizeof *s->joined);
   s->y = trb_memory_zeros(&s->memory, n, sizeof *s->y);
   s->rates = trb_memory_zeros(&s->memory, n, sizeof *s->rates);
   s->error = trb_memory_zeros(&s->memory, n, sizeof *s->error);
@@ -315,8 +315,8 @@ static void multirate_statistics(const trb_integrator *it, trb_statistics *stati
 static int multirate_worst(trb_integrator *it) { return trb_integrator_worst(it, ((const trb_multirate *)it->self)->error); }
 
 const trb_integrator_kind trb_integrator_multirate = {
-    "multirate",           "backward differentiation of order 2 with steps of its own for each roller that touches nothing",
-    multirate_create,      multirate_free,
-    multirate_restart,     multirate_step,
-    multirate_interpolate, multirate_statistics,
-    multirate_worst};
+    "multirate",          "backward differentiation of order 2 with steps of its own for each roller that touches nothing",
+    multirate_refuses,    multirate_create,
+    multirate_free,       multirate_restart,
+    multirate_step,       multirate_interpolate,
+    multirate_statistics, multirate_worst};

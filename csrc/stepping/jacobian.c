@@ -319,3 +319,27 @@ void trb_jacobian_fill_of(trb_jacobian *jac, double time, const double *y, int f
       trb_modal_finish(jac->modal[b], &d->system->bodies[b], d->system->bodies[b].first - trb_state_hub(d->system), arrow);
   trb_spacer_blocks(d, y, arrow);
 }
+
+void trb_jacobian_add(trb_jacobian *jac, double time, const double *y, int roller, trb_arrow *arrow)
+{
+  trb_dynamics    *d = jac->d;
+  double          *still = jac->rates + 2 * arrow->width;
+  const trb_wrench none = {{0, 0, 0}, {0, 0, 0}};
+  place(jac, time, y, &roller, 1);
+  for (int c = 0; c < TRB_NR; c++)
+    memcpy(arrow->rollers[leaf_of(d, roller)].own[c], trb_tangents_column(jac->tangents, roller, c), TRB_NR * sizeof(double));
+  memset(jac->changes, 0, (size_t)arrow->width * sizeof *jac->changes);
+  for (int b = 0; b < d->system->n_bodies; b++) body_rates(d, b, y, &none, still);
+  fill_fast(jac, roller, y, still, arrow);
+  for (int b = 0; b < d->system->n_bodies; b++) {
+    const trb_body *body = &d->system->bodies[b];
+    const int       first = body->first - trb_state_hub(d->system);
+    if (body->size == 0) continue;
+    respond(jac, b, y, still);
+    for (int c = first; c < first + body->size; c++) {
+      double change[TRB_RING_OUT];
+      trb_ring_reaction(&jac->changes[c], change);
+      add_response(jac, body, body->size, change, arrow->hub + c * arrow->room + first);
+    }
+  }
+}

@@ -15,7 +15,8 @@ typedef struct trb_jacobian {
   double       *moved;    /* scratch: a state with one coordinate moved */
   double       *rates;    /* scratch: three times the rates of the hub */
   trb_wrench   *changes;  /* scratch: slopes of the loads of the hub's bodies with each of their own coordinates */
-  double *response; /* scratch, of rings with coordinates and of bodies that deform: [force or moment in R][rate]: what a unit of it does */
+  double *
+      response; /* scratch, of rings with coordinates, of bodies that deform, and of those of the hub where a roller is added: [force or moment in R][rate]: what a unit of it does */
   double (*with)[TRB_RING_IN];       /* scratch, of rings with coordinates: slopes of their inputs with each coordinate */
   trb_modal *modal[TRB_MOST_BODIES]; /* of bodies that deform */
   int       *renewed;                /* rollers whose slopes are taken again at the next fill, ascending */
@@ -36,5 +37,8 @@ void trb_jacobian_slopes(trb_jacobian *jacobian, double time, const double *y, c
 void trb_jacobian_fill(trb_jacobian *jacobian, double time, const double *y, int fresh, trb_arrow *arrow);
 /* The same as if the system had n chosen rollers only; those that are renewed must be among them. */
 void trb_jacobian_fill_of(trb_jacobian *jacobian, double time, const double *y, int fresh, const int *chosen, int n, trb_arrow *arrow);
+/* Adds one more roller to a system of chosen rollers that was filled so and has no rings with coordinates and no body that deforms: its block, its borders,
+ * and what it does to the hub's block. */
+void trb_jacobian_add(trb_jacobian *jacobian, double time, const double *y, int roller, trb_arrow *arrow);
 
 #endif

@@ -8,6 +8,14 @@
 static const double per_l1 = 2.0 / 3.0;
 /* Change of gamma up to which factors are used, as a share. */
 static const double gamma_change = 0.3;
+/* A first correction is taken without another evaluation where what corrections left when it was measured last promises that the equations then hold to
+ * this share of the tolerance, and solves seldom fail; it is measured again after so many. */
+static const double promised = 0.3, seldom = 0.05;
+enum { MOST_SPARED = 8 };
+/* Share of their error by which skew, tilt and the spins that belong to them limit the step of rollers which touch the cage. They swing fast there; at this
+ * share forces in pockets are as exact as with one step for all bodies, and no better below 1 (docs/theory/multirate.md#what-limits-a-step). */
+static const double swing_share = 0.5;
+static const int    swings[] = {TRB_ROLLER_skew, TRB_ROLLER_tilt, TRB_ROLLER_omega_n, TRB_ROLLER_omega_t};
 
 static void put_state(const trb_multirate *s, const trb_mover *mover, const double *from)
 {
@@ -52,11 +60,12 @@ static void note_slopes(trb_mover *mover, double end)
   mover->slopes_at = end;
 }
 
-static int factor(trb_multirate *s, const trb_team *team, double gamma)
+/* filled: the Jacobian is new; else inverses of single rollers can be used again. */
+static int factor(trb_multirate *s, const trb_team *team, double gamma, int filled)
 {
   s->count.linear_setups++;
   s->factors_age = 0;
-  s->has_factors = trb_arrow_factor(s->arrow, gamma, team->rollers, team->n, s->factors);
+  s->has_factors = (filled ? trb_arrow_factor : trb_arrow_factor_again)(s->arrow, gamma, team->rollers, team->n, s->factors);
   return s->has_factors;
 }
 
@@ -77,9 +86,17 @@ static int prepare_hub(trb_integrator *it, const trb_team *team, double end, dou
     s->count.jacobian_evaluations++;
     s->has_jacobian = 1;
     s->jacobian_age = 0;
+  } else if (s->n_joined > 0) {
+    put_state(s, &s->movers[s->n_rollers], s->movers[s->n_rollers].p[0]);
+    for (int k = 0; k < s->n_joined; k++) {
+      put_state(s, &s->movers[s->joined[k]], s->movers[s->joined[k]].p[0]);
+      trb_jacobian_add(s->jacobian, end, s->y, s->joined[k], s->arrow);
+      s->factors->held[s->joined[k]] = 0.0;
+    }
   }
+  s->n_joined = 0;
   const int other = fabs(gamma / s->factors->gamma - 1.0) > gamma_change || s->factors_age >= TRB_SETUP_EVERY;
-  return fill || !s->has_factors || other ? factor(s, team, gamma) : 1;
+  return fill || !s->has_factors || other ? factor(s, team, gamma, fill) : 1;
 }
 
 static int prepare_alone(trb_integrator *it, int roller, double end, double gamma, int fresh)
@@ -90,25 +107,25 @@ static int prepare_alone(trb_integrator *it, int roller, double end, double gamm
     put_state(s, mover, mover->p[0]);
     trb_jacobian_slopes(s->jacobian, end, s->y, &roller, 1);
     note_slopes(mover, end);
-    mover->gamma = 0.0;
+    s->factors->held[roller] = 0.0;
   }
-  if (mover->gamma > 0.0 && fabs(gamma / mover->gamma - 1.0) <= gamma_change && mover->age < TRB_SETUP_EVERY) return 1;
-  trb_arrow_block block = {0};
-  for (int c = 0; c < TRB_NR; c++) memcpy(block.own[c], trb_tangents_column(s->jacobian->tangents, roller, c), TRB_NR * sizeof(double));
+  const double held = s->factors->held[roller];
+  if (held > 0.0 && fabs(gamma / held - 1.0) <= gamma_change && mover->age < TRB_SETUP_EVERY) return 1;
+  for (int c = 0; c < TRB_NR; c++)
+    memcpy(s->arrow->rollers[roller].own[c], trb_tangents_column(s->jacobian->tangents, roller, c), TRB_NR * sizeof(double));
   s->count.linear_setups++;
   mover->age = 0;
-  mover->gamma = s->factors->kernels->factor(&block, gamma, &mover->inverse) ? gamma : 0.0;
-  return mover->gamma > 0.0;
+  return trb_arrow_factor_alone(s->arrow, gamma, roller, s->factors);
 }
 
 /* Correction from what the equations lack, both in s->packed. */
 static void solve(trb_multirate *s, const trb_team *team)
 {
   const trb_block_kernels *kernels = s->factors->kernels;
-  if (team->with_hub) kernels->solve(s->factors->rollers, s->factors->borders, team->n, &s->factors->hub, s->packed);
+  if (team->with_hub) kernels->solve(s->factors->rollers, s->factors->borders, team->rollers, team->n, &s->factors->hub, s->packed);
   else {
     double to[TRB_NP] = {0};
-    kernels->add(s->movers[team->rollers[0]].inverse.inverse[0], TRB_NP, TRB_NR, s->packed, to);
+    kernels->add(s->factors->rollers[team->rollers[0]].inverse[0], TRB_NP, TRB_NR, s->packed, to);
     memcpy(s->packed, to, TRB_NR * sizeof *to);
   }
 }
@@ -159,22 +176,60 @@ static void integrate(trb_multirate *s, const trb_team *team, double gamma)
   }
 }
 
+/* Whether the hub touches a ring's land, or may do so soon: then nothing is promised. */
+static int is_at_land(const trb_integrator *it)
+{
+  const trb_member   *member = &it->members[0];
+  const trb_dynamics *d = member->dynamics;
+  int                 near = 0;
+  for (int i = 0; i < d->work->n_hub; i++)
+    near |=
+        d->work->hub[i].pairs[0]->kind->approach != NULL && isfinite(member->impacts.speed[d->model->n_rollers + d->work->hub[i].index[0]]);
+  return near;
+}
+
+/* Takes the flows of rollers, with the rates of their integrals, from where they were evaluated to where the correction has led, by the slopes of the tangents. */
+static void carry_on(const trb_integrator *it, const trb_team *team)
+{
+  static const double none[TRB_TANGENT_OUT];
+  trb_multirate      *s = it->self;
+  const trb_tangents *t = s->jacobian->tangents;
+  const trb_dynamics *d = it->members[0].dynamics;
+  for (int k = 0; k < team->n; k++) {
+    const int j = team->rollers[k];
+    double    step[TRB_TANGENT_IN] = {0}, flow[TRB_TANGENT_OUT];
+    memcpy(step, s->movers[j].e, TRB_NR * sizeof *step);
+    memcpy(flow, d->flows[j], sizeof flow);
+    s->factors->kernels->follow(flow, (const double (*)[TRB_TANGENT_OUT])t->rollers[j].slope, step, none, 0.0, t->least, d->flows[j]);
+  }
+}
+
 static int iterate(trb_integrator *it, const trb_team *team, double end, double gamma, double tolerance, double failing, int exact)
 {
   trb_multirate *s = it->self;
   const int      size = team->n * TRB_NR + (team->with_hub ? s->movers[s->n_rollers].course.main : 0);
-  double         first = INFINITY, before = 0.0, square[TRB_NEWTON_MOST];
+  trb_mover     *head = trb_team_head(s, team);
+  const int spares = !exact && failing < seldom && head->spared < MOST_SPARED && head->kept > 0.0 && !(team->with_hub && is_at_land(it));
+  double    first = INFINITY, before = 0.0, square[TRB_NEWTON_MOST];
   for (int k = 0; k < trb_team_size(team); k++) memset(trb_team_mover(s, team, k)->e, 0, TRB_NP * sizeof(double));
   for (int m = 0; m < TRB_NEWTON_MOST; m++) {
     const double off = measure(it, team, end, gamma, exact);
     if (!isfinite(off)) return 0;
     for (int k = 0; k < team->n && m == 1 && off > trb_poor * before && off > trb_negligible * tolerance; k++)
       s->movers[team->rollers[k]].poor |= s->movers[team->rollers[k]].left > 0.5 * trb_poor * before;
+    if (m == 1 && before > 0.0) head->kept = off / before;
     solve(s, team);
     trb_newton_improve(m, size, s->weight, s->packed, s->taken, s->stride, square);
     s->count.nonlinear_iterations++;
     const double change = add(s, team);
+    if (m == 0 && spares && change <= tolerance && head->kept * off <= promised * tolerance) {
+      head->spared++;
+      carry_on(it, team);
+      integrate(s, team, gamma);
+      return 1;
+    }
     if (change <= tolerance && trb_newton_holds(failing, off, before, tolerance)) {
+      head->spared = 0;
       integrate(s, team, gamma);
       return 1;
     }
@@ -204,9 +259,12 @@ static double error_of(trb_multirate *s, const trb_team *team, double per)
   const double *weight = s->weight;
   double        largest = 0.0;
   for (int k = 0; k < trb_team_size(team); k++) {
-    trb_mover   *b = trb_team_mover(s, team, k);
-    const int    n = b->course.main;
-    const double error = per * sqrt(trb_weighted_product(n, b->e, b->e, weight) / n);
+    trb_mover *b = trb_team_mover(s, team, k);
+    const int  n = b->course.main;
+    double     e[TRB_COURSE_ROOM];
+    memcpy(e, b->e, (size_t)n * sizeof *e);
+    for (size_t i = 0; i < sizeof swings / sizeof *swings && team->with_hub && k < team->n; i++) e[swings[i]] *= swing_share;
+    const double error = per * sqrt(trb_weighted_product(n, e, e, weight) / n);
     if (!(error <= largest)) largest = error;
     for (int i = 0; i < n; i++) s->error[b->first + i] = per * b->e[i];
     weight += n;

@@ -10,38 +10,37 @@
 
 /* A body, with what Newton's method needs of it. */
 typedef struct trb_mover {
-  int                    first;     /* where its coordinates begin in a state */
-  int                    together;  /* of a roller: it steps with the hub */
-  int                    quiet;     /* steps with the hub in which it has touched nothing, one after the other */
-  int                    troubled;  /* the last solve failed */
-  double                 failing;   /* share of solves that failed, the last ones counting most */
-  int                    errors;    /* steps refused for their error, one after the other */
-  int                    poor;      /* a correction left too much of its equations */
-  long                   solves;    /* since its slopes were taken */
-  double                 slopes_at; /* when they were, s */
-  trb_arrow_factor_block inverse;   /* of its own equations, where it steps alone */
-  double                 gamma;     /* of them; 0: there is none */
-  int                    age;       /* solves that it was used for */
-  double                 p[3][TRB_COURSE_ROOM], e[TRB_COURSE_ROOM], x[TRB_COURSE_ROOM];
-  const double          *flow; /* its rates, as they were evaluated last */
-  double                 left; /* what its equations lack, in tolerances */
-  trb_course             course;
+  int           first;     /* where its coordinates begin in a state */
+  int           together;  /* of a roller: it steps with the hub */
+  int           quiet;     /* steps with the hub in which it has touched nothing, one after the other */
+  int           troubled;  /* the last solve failed */
+  double        failing;   /* share of solves that failed, the last ones counting most */
+  int           errors;    /* steps refused for their error, one after the other */
+  int           poor;      /* a correction left too much of its equations */
+  long          solves;    /* since its slopes were taken */
+  double        slopes_at; /* when they were, s */
+  int           age;       /* solves that the inverse of its own block was used for, where it steps alone */
+  double        p[3][TRB_COURSE_ROOM], e[TRB_COURSE_ROOM], x[TRB_COURSE_ROOM];
+  double        kept;   /* of a team's head: share of what its equations lacked that a first correction left, when it was measured last */
+  int           spared; /* evaluations that were spared since then */
+  const double *flow;   /* its rates, as they were evaluated last */
+  double        left;   /* what its equations lack, in tolerances */
+  trb_course    course;
 } trb_mover;
 
 typedef struct trb_multirate {
   trb_jacobian       *jacobian;
   trb_arrow          *arrow;
-  trb_arrow_factors  *factors; /* of the team with the hub: its rollers one after the other */
+  trb_arrow_factors  *factors; /* of the team with the hub, and of each roller by itself */
   trb_tangent_measure measure;
   trb_approximation   tangents;
   trb_mover          *movers; /* rollers, then the hub */
-  trb_course_step     tried;  /* step that the hub has tried */
   double              hub_flow[TRB_COURSE_ROOM];
-  double              ways[TRB_COURSE_ROOM]; /* by how much the hub differs in a part of that step from its middle */
-  int                 at_middle;             /* that part is the whole, and y holds the hub there */
   int                 n_rollers, n_quadratures;
   int                *together; /* rollers that step with the hub, ascending */
   int                 n_together;
+  int                *joined; /* of them those that have no part in the Jacobian yet */
+  int                 n_joined;
   int                 has_jacobian, has_factors; /* of the team with the hub as it is */
   int                 jacobian_age, factors_age; /* solves that they were used for */
   double             *y, *rates;                 /* scratch: a state and its rates */
@@ -81,9 +80,8 @@ trb_outcome trb_multirate_try(trb_integrator *it, const trb_team *team, double e
 
 /* Lists the rollers that step with the hub. */
 void trb_multirate_list(trb_multirate *s);
-/* Rollers by themselves that may have touched something in the step that the hub has tried, which ends at a time, join it where it began; gives how many.
- * touches: whether one of them is known to have done so. */
-int trb_multirate_join(trb_integrator *it, double end, int *touches);
+/* Rollers by themselves that touch something at the end of the step that the hub has tried join it where it began; gives how many. */
+int trb_multirate_join(trb_integrator *it, double end);
 /* Rollers of the hub's team that have touched nothing for long leave it, after a step. */
 void trb_multirate_leave(trb_integrator *it);
 

@@ -146,6 +146,7 @@ static trb_status open_all(trb_simulation *s, const trb_system *const *systems, 
   memcpy(it->y, state, (size_t)it->n * sizeof *state);
   hold(s, time, it->y);
   trb_integrator_set_tolerances(it);
+  if (it->kind == NULL) trb_integrator_choose(it);
   return it->kind->create(it, message);
 }
 
@@ -157,7 +158,8 @@ trb_status trb_simulation_create(const trb_system *const *systems, const trb_mot
   const trb_status status = check_settings(settings, message);
   if (status != TRB_OK) return status;
   const trb_integrator_kind *found = find_kind(kind);
-  if (found == NULL) return trb_fail(message, TRB_ERR_INPUT, "integrator = '%s': must be 'bdf', 'erk' or 'multirate'", kind);
+  if (found == NULL && strcmp(kind, "auto") != 0)
+    return trb_fail(message, TRB_ERR_INPUT, "integrator = '%s': must be 'auto', 'multirate', 'bdf' or 'erk'", kind);
   trb_simulation *s = calloc(1, sizeof *s);
   if (s == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for a simulation");
   s->previous = time;
@@ -178,7 +180,7 @@ void trb_simulation_free(trb_simulation *s)
   if (s == NULL) return;
   trb_integrator *it = &s->integrator;
   trb_simulation_end_peaks(s);
-  it->kind->free(it);
+  if (it->kind != NULL) it->kind->free(it);
   for (int k = 0; k < TRB_MOST_MEMBERS; k++) {
     trb_memory_free(&it->members[k].impacts.memory);
     trb_dynamics_free(it->members[k].dynamics);

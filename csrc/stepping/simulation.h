@@ -20,7 +20,7 @@ typedef struct trb_simulation {
   trb_memory       memory;                  /* of all arrays */
 } trb_simulation;
 
-/* Of n bearings: their systems, which are copied, and what is prescribed for each. kind: name of an integrator; variant: of a kernel variant
+/* Of n bearings: their systems, which are copied, and what is prescribed for each. kind: name of an integrator, or "auto": trb_integrator_choose; variant: of a kernel variant
  * or "". n_state: length of the state. */
 trb_status trb_simulation_create(const trb_system *const *systems, const trb_motion *const *motions, int n, const char *kind,
                                  const char *variant, const trb_settings *settings, double time, const double *state, int n_state,

@@ -105,6 +105,44 @@ static void check_scene(const trb_params *params, double load, double most, int 
   rig_close(&b);
 }
 
+/* A roller that is added to the system of the others: as if it had been there. Its part of the hub's block leaves out what differences of the rates see of
+ * loads over radii. */
+static void test_added(void)
+{
+  const trb_params  p = rig_params();
+  rig_bench         b = rig_open(&p, 4930.0);
+  const trb_system *system = b.system;
+  const int         n_rollers = system->model->n_rollers, n = trb_state_main_size(system);
+  double            y[RIG_ROOM];
+  int               others[64], added = 0;
+  trb_jacobian     *jac = rig_jacobian(system, b.motion);
+  trb_arrow        *arrow = rig_arrow(system);
+  memcpy(y, b.start, sizeof y);
+  rig_disturb(system, &seed, y);
+  rig_draw_back(b.d, 20.0, b.start, y);
+  trb_jacobian_fill(jac, 0.01, y, 1, arrow);
+  while (added < n_rollers && arrow->borders[added].parts == 0U) added++;
+  if (CHECK(added < n_rollers)) {
+    expand(system, arrow);
+    memcpy(dense, found, sizeof dense);
+    for (int k = 0; k < n_rollers - 1; k++) others[k] = k + (k >= added);
+    trb_jacobian_fill_of(jac, 0.01, y, 0, others, n_rollers - 1, arrow);
+    expand(system, arrow);
+    const int at = rig_cage(system) + TRB_CAGE_v_x;
+    CHECK(memcmp(found[at], dense[at], sizeof found[at]) != 0);
+    trb_jacobian_add(jac, 0.01, y, added, arrow);
+    expand(system, arrow);
+    for (int i = 0; i < n; i++) {
+      double largest = 0.0, off = 0.0;
+      for (int c = 0; c < n; c++) largest = fmax(largest, fabs(dense[i][c])), off = fmax(off, fabs(found[i][c] - dense[i][c]));
+      CHECK_NEAR(off, 0.0, 1e-3 * largest + 1e-9);
+    }
+  }
+  trb_jacobian_free(jac);
+  trb_arrow_free(arrow);
+  rig_close(&b);
+}
+
 /* As impacts are, and with loads of kilonewtons. */
 static void check_both(const trb_params *params, double load)
 {
@@ -139,5 +177,6 @@ int main(void)
   check_scene(&p, 4930.0, INFINITY, 0, 2e-3);
   p = rig_params(), p.planar = 1, p.with_cage = 2;
   check_scene(&p, 4930.0, INFINITY, 0, 2e-3);
+  test_added();
   return check_report();
 }

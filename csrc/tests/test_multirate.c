@@ -37,7 +37,7 @@ static void test_formula(void)
   CHECK(coarse < 1e-3 && coarse / fine > 12.0 && coarse / fine < 20.0);
 }
 
-/* Values at earlier times, the way between two times, and a body that goes back: all of the polynomials of the steps. */
+/* Values at earlier times, and a body that goes back: all of the polynomials of the steps. */
 static void test_course(void)
 {
   trb_course         c = {.n = 3, .main = 3, .wait = 0};
@@ -54,17 +54,6 @@ static void test_course(void)
   }
   const double end = c.now.end;
   CHECK(trb_course_lead(&c, end) == 0 && trb_course_lead(&c, times[TRB_COURSE_KEPT + 4]) == 3);
-  for (int i = 0; i < 50; i++) {
-    const double from = times[12] + 0.02 * i * (end - times[12]), to = from + 0.3 * (end - from);
-    double       value[3], ways[3] = {0};
-    trb_course_at(&c, to, 3, value);
-    trb_course_ways(&c, from, to, 3, value, ways);
-    for (int k = 0; k <= 100; k++) {
-      double at[3];
-      trb_course_at(&c, from + 0.01 * k * (to - from), 3, at);
-      for (int q = 0; q < 3; q++) CHECK(fabs(at[q] - value[q]) <= ways[q] * (1.0 + 1e-12) + 1e-12);
-    }
-  }
   const double to = times[TRB_COURSE_KEPT] + 0.01, beside = to - 0.02;
   double       before[3], after[3];
   trb_course_at(&c, to, 3, before);
@@ -187,11 +176,11 @@ static double gap_at(trb_dynamics *d, int j, const double *y)
   return least;
 }
 
-/* With tolerances so wide that steps are long beside impacts: no roller that steps by itself touches anything at any instant of a step, and none is ahead
+/* With tolerances so wide that steps are long beside impacts: no roller that steps by itself touches anything at the end of a step, and none is ahead
  * of the cage by more steps than are kept. Rollers join and leave. */
 static void test_touch(void)
 {
-  enum { STEPS = 1500, LOOKS = 12 };
+  enum { STEPS = 1500 };
   bench            b;
   trb_settings     settings = rig_settings();
   const trb_params p = rig_params();
@@ -205,8 +194,7 @@ static void test_touch(void)
   trb_dynamics        *d = rig_dynamics(b.system, b.motion);
   const trb_multirate *s = b.sim->integrator.self;
   for (int i = 0; i < STEPS; i++) {
-    const double from = b.sim->integrator.time;
-    int          was[64];
+    int was[64];
     if (!CHECK(trb_simulation_step(b.sim, &message) == TRB_OK)) break;
     const double to = b.sim->integrator.time;
     /* those of the team left or joined after this step */
@@ -216,19 +204,16 @@ static void test_touch(void)
       CHECK(trb_course_lead(&s->movers[j].course, to) <= TRB_COURSE_LEAD + 1);
       CHECK(s->movers[j].course.now.end >= to);
     }
-    for (int look = 0; look <= LOOKS; look++) {
-      const double at = look == LOOKS ? to : from + (to - from) * look / LOOKS;
-      CHECK(trb_simulation_state_at(b.sim, at, y, NULL) == TRB_OK);
-      trb_dynamics_pose(d, at, y);
-      for (int j = 0; j < s->n_rollers; j++) {
-        if (was[j]) continue;
-        least = fmin(least, gap_at(d, j, y));
-        alone++;
-      }
+    CHECK(trb_simulation_state_at(b.sim, to, y, NULL) == TRB_OK);
+    trb_dynamics_pose(d, to, y);
+    for (int j = 0; j < s->n_rollers; j++) {
+      if (was[j]) continue;
+      least = fmin(least, gap_at(d, j, y));
+      alone++;
     }
   }
   printf("%ld looks at rollers by themselves, least gap %.3g um; %ld steps of rollers with the cage\n", alone, 1e6 * least, joined);
-  CHECK(least > 0.0 && alone > 20000 && joined > 500);
+  CHECK(least > 0.0 && alone > 1500 && joined > 500);
   trb_dynamics_free(d);
   drop(&b);
 }

@@ -45,7 +45,7 @@ static void test_bad_input(void)
     }
   }
   settings = rig_settings();
-  refused("euler", "", &settings, 0.0, start, TRB_ERR_INPUT, "integrator = 'euler': must be 'bdf', 'erk' or 'multirate'");
+  refused("euler", "", &settings, 0.0, start, TRB_ERR_INPUT, "integrator = 'euler': must be 'auto', 'multirate', 'bdf' or 'erk'");
   refused("bdf", "sse", &settings, 0.0, start, TRB_ERR_INPUT, "instruction_set = 'sse'");
   refused("bdf", "", &settings, NAN, start, TRB_ERR_STATE, "time");
   for (int i = 0; i < trb_state_size(built); i += 13) {

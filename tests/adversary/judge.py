@@ -32,6 +32,7 @@ Array = NDArray[np.float64]
 MOST_STEPS = 6000
 """Steps of the judged run; the others run over the same time."""
 TIGHT: dict[str, Any] = {
+    "integrator": "bdf",
     "accuracy": "reference",
     "rings_share": 0.0,
     **{name: 0.1 * value for name, value in ACCURACY["reference"].model_dump().items()},

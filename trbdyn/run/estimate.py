@@ -30,6 +30,9 @@ if TYPE_CHECKING:
 TABLE: Final = DATA / "accuracy.json"
 """Errors over tolerances, written by ``python benchmarks/work_precision.py --make-table``."""
 
+MEASURED: Final = ("bdf", "multirate")
+"""Integrators for which the table is given. It was measured with 'bdf'; docs/theory/multirate.md has both side by side."""
+
 PART: Final = 0.5
 """Length of a part of the probe, in turns of the shaft."""
 LEAST_PARTS: Final = 8
@@ -296,7 +299,7 @@ def _errors(sim: Simulation) -> dict[str, Any]:
     window = float(np.median(measured["windows_s"][case]))
     place = {"window": window, "case": case} | dict.fromkeys(_BIASES, math.nan)
     standard = options.max_order == 2 and options.rings_share is None and options.impact_share is None
-    known = len(sim.bearings) == 1 and options.integrator == "bdf" and standard and sim.scene.effects.has_cage
+    known = len(sim.bearings) == 1 and options.integrator in MEASURED and standard and sim.scene.effects.has_cage
     if not known:
         return place | dict.fromkeys(_ERRORS, math.nan) | {"extrapolated": True}
     preset = measured["presets_of_scenes"].get(case, {}).get(preset_like(options))
@@ -394,5 +397,5 @@ def preset_of(result: Result) -> str | None:
     settings: Mapping[str, Any] = result.meta.get("settings") or {}
     own = [name for name in ("rtol", "atol_position", "atol_angle", "atol_velocity", "atol_spin") if settings.get(name)]
     preset = settings.get("accuracy")
-    known = preset in table()["presets"] and not own and settings.get("integrator") == "bdf"
+    known = preset in table()["presets"] and not own and settings.get("integrator") in MEASURED
     return str(preset) if known else None

@@ -97,10 +97,11 @@ class RunOptions(Model):
         nothing.
     accuracy : {'fast', 'standard', 'reference'}
         Preset of the tolerances, `ACCURACY`.
-    integrator : {'bdf', 'erk', 'multirate'}
-        CVODE's BDF; an explicit Runge-Kutta method of ARKODE for cross-checks; or BDF of order 2 in which each roller that
-        touches nothing takes steps of its own, for one bearing with a rigid cage, true surfaces and rings that do not move
-        freely.
+    integrator : {'auto', 'multirate', 'bdf', 'erk'}
+        'multirate': backward differentiation (BDF) of order 2 in which each roller that touches nothing takes steps of its own,
+        for one bearing whose rings are held or follow. 'bdf': CVODE's BDF, which takes one step for all bodies and can run every
+        scene. 'erk': an explicit Runge-Kutta method of ARKODE for cross-checks. 'auto': 'multirate' where it can run the scene,
+        else 'bdf'; simulations and results name the one that was taken (docs/theory/multirate.md#which-scenes).
     rtol, atol_position, atol_angle, atol_velocity, atol_spin : float, optional
         Take the place of the preset's tolerances (1, m, rad, m/s, rad/s).
     max_order : int
@@ -129,7 +130,7 @@ class RunOptions(Model):
     save_every: Annotated[Number | None, unit("s", gt=0)] = None
     save_groups: Annotated[tuple[Group, ...], Field(min_length=1)] = GROUPS
     accuracy: Literal["fast", "standard", "reference"] = "standard"
-    integrator: Literal["bdf", "erk", "multirate"] = "bdf"
+    integrator: Literal["auto", "multirate", "bdf", "erk"] = "auto"
     rtol: Annotated[Number, setting("rtol", "1")] | None = None
     atol_position: Annotated[Number, setting("atol_position", "m")] | None = None
     atol_angle: Annotated[Number, setting("atol_angle", "rad")] | None = None

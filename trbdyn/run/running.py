@@ -378,6 +378,7 @@ class Run:
             "sundials_version": _core.sundials_version(),
             "core_version": _core.version(),
             "settings": settings,
+            "integrator": self.sim.integrator,
             "kept": keeping.said(self.options.save_every or 0.0, self.options.save_groups),
             "notes": bearing.notes,
         }

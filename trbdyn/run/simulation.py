@@ -194,6 +194,8 @@ class Simulation(Displayed, Generic[R]):
     def _begin(self, time: float, vector: Array) -> None:
         """Make a new integrator, without any history: as in a new process."""
         self._core = self._open(time, vector)
+        # a run, its result and its checkpoints name the integrator that is used
+        self.options = self.options.replace(integrator=self._core.integrator)
         self._begun = time
         self._end = None
 
@@ -227,6 +229,12 @@ class Simulation(Displayed, Generic[R]):
         whole run.
         """
         return self._core.time if self._end is None else self._end.time
+
+    @property
+    def integrator(self) -> str:
+        """The integrator in use, and why it is 'bdf' where none was asked for."""
+        reason = self._core.reason
+        return f"{self._core.integrator}, as {reason}" if reason else self._core.integrator
 
     @property
     def instruction_set(self) -> str:

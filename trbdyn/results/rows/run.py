@@ -25,13 +25,14 @@ For y' = i w y its formula, whose root is exp(l) with l = i w h + l^3 / 3 - l^4 
 def _followed(seen: Seen) -> float | None:
     """Frequency (Hz) up to which vibrations keep their frequency within 1 %, from the mean step; None for another method."""
     settings, step = seen.run.meta.get("settings"), seen.run.stats.get("mean_step_s") or math.nan
-    if (
-        not isinstance(settings, Mapping)
-        or settings.get("integrator", "bdf") != "bdf"
-        or settings.get("max_order", 2) > 2
-    ):
+    if not isinstance(settings, Mapping) or settings.get("max_order", 2) > 2:
         return None
-    return FOLLOWED / (2.0 * math.pi * step)
+    kind = settings.get("integrator", "bdf")
+    if kind == "multirate":
+        # of the bodies, whose steps differ
+        steps, of_bodies = (seen.run.stats.get(name) or math.nan for name in ("steps", "body_steps"))
+        step *= steps * (seen.run.scene.bearing.n_rollers + 1) / of_bodies
+    return FOLLOWED / (2.0 * math.pi * step) if kind in ("bdf", "multirate") else None
 
 
 def _wall_of_turn(seen: Seen) -> float | None:
