@@ -25,8 +25,8 @@ def tolerances(rtol: float) -> dict[str, float]:
     return {"rtol": rtol} | {name: part * rtol for name, part in parts.items()}
 
 
-USUAL = tolerances(1e-3) | {"rings_share": 0.1}
-TIGHT = tolerances(1e-4) | {"rings_share": 0.03}
+USUAL = tolerances(1e-3) | {"integrator": "bdf", "rings_share": 0.1}
+TIGHT = tolerances(1e-4) | {"integrator": "bdf", "rings_share": 0.03}
 
 
 def run(duration: float, scenery: dict[str, Any], options: dict[str, Any]) -> Result:
