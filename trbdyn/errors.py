@@ -22,6 +22,11 @@ def __dir__() -> list[str]:
     return sorted(__all__)
 
 
+MOST_TOLD: Final = 20
+"""Most problems of one kind that are told at once."""
+LONGEST_NAME: Final = 80
+"""Most letters of a name in a message."""
+
 Path = tuple[str | int, ...]
 
 
@@ -93,7 +98,9 @@ class InputError(TrbError, ValueError):
     def __init__(self, problems: Sequence[Problem], root: Path = ()) -> None:
         self.problems = tuple(problems)
         self.root = root
-        super().__init__("\n".join(problem.line(root) for problem in self.problems))
+        lines = [problem.line(root) for problem in self.problems[:MOST_TOLD]]
+        rest = len(self.problems) - MOST_TOLD
+        super().__init__("\n".join(lines + ([f"and {rest} more"] if rest > 0 else [])))
 
     @classmethod
     def of(cls, field: str | Path, value: object, allowed: str) -> InputError:
@@ -171,14 +178,15 @@ def join_path(path: Iterable[str | int]) -> str:
     """A path as users write it: ``bearing.cage.pocket.faces[2].outline``."""
     text = ""
     for part in path:
-        text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else part
+        name = f"{part[: LONGEST_NAME - 3]}..." if isinstance(part, str) and len(part) > LONGEST_NAME else part
+        text += f"[{part}]" if isinstance(part, int) else f".{name}" if text else str(name)
     return text
 
 
 def unknown_name(name: str, allowed: Iterable[str]) -> str:
     """What to say of a name that is not known: the nearest known one and all that are allowed."""
     names = sorted(allowed)
-    near = difflib.get_close_matches(name, names, n=1)
+    near = difflib.get_close_matches(name[:LONGEST_NAME], names, n=1)
     hint = f"did you mean '{near[0]}'? " if near else ""
     return f"unknown name; {hint}allowed: {', '.join(names)}"
 
@@ -196,7 +204,7 @@ def from_validation_error(error: ValidationError, fields: Mapping[str, FieldInfo
         Where the paths of the problems start.
     """
     problems: list[Problem] = []
-    for line in error.errors(include_url=False):
+    for line in error.errors(include_url=False)[:MOST_TOLD]:
         context = line.get("ctx", {})
         cause = context.get("error")
         where: Path = tuple(line["loc"])

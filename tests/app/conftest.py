@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -32,14 +33,36 @@ class Server:
         command = [sys.executable, "-m", "trbdyn", "app", "--no-browser", "--folder", str(folder)]
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         assert self.process.stdout is not None
-        self.address = self.process.stdout.readline().split()[-1]
-        self.base, _, self.token = self.address.partition("/?token=")
+        self.addresses = [self.process.stdout.readline().split()[-1]]
+        self.base = self.addresses[0].partition("/?token=")[0]
         self.port = int(self.base.rsplit(":", 1)[1])
+        self.opened: dict[int, str] = {}
+        threading.Thread(target=self._listen, daemon=True).start()
+
+    def _listen(self) -> None:
+        """Each address opens the page once; then the next one is printed."""
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            if "token=" in line:
+                self.addresses.append(line.split()[-1])
+
+    def address_for(self, browser: Any) -> str:
+        """Where the page is for a browser: an address with a token the first time, then that of the page."""
+        if id(browser) not in self.opened:
+            used = len(self.opened)
+            deadline = time.monotonic() + 20.0
+            while len(self.addresses) <= used:
+                assert time.monotonic() < deadline
+                time.sleep(0.02)
+            return self.addresses[used]
+        return self.opened[id(browser)]
 
     def end(self) -> str:
         """End it; gives what it said of errors."""
         self.process.terminate()
-        return self.process.communicate(timeout=40)[1]
+        assert self.process.stderr is not None
+        self.process.wait(40)
+        return self.process.stderr.read()
 
 
 class User:

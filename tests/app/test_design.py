@@ -7,8 +7,10 @@ from typing import Any
 
 import pytest
 
-from trbdyn.app.design import Design, all_fields, built, script
+from trbdyn.app.design import Design, all_fields, built
+from trbdyn.app.load_cases import cases_of, checked
 from trbdyn.app.outcome import case_of
+from trbdyn.app.program import script
 from trbdyn.app.units import read
 from trbdyn.run.toml_assembly import subject_from_dict
 
@@ -81,13 +83,17 @@ def test_a_change_of_units_changes_no_quantity() -> None:
 @pytest.mark.parametrize(
     ("path", "text", "said"),
     [
-        ("page.bore", "0.04", "50 mm is 0.05"),
+        ("page.bore", "0.04", "0.04 mm: must be from 2 to 5000 mm"),
         ("page.bore", "40 kN", "not in kN"),
         ("page.bore", "40,5", "with a point in place of the comma"),
         ("page.bore", "1e999", "must be"),
         ("page.bore", "9" * 400, "must be a number"),
         ("page.bore", "nan", "must be a number"),
-        ("page.C", "74800", "for rollers that fit these dimensions"),
+        ("page.C", "74800", "must be from 51.7 to 147 kN for rollers that fit these dimensions"),
+        ("scene.misalignment_x", "1000", "1000 mrad: must be from -87.27 to 87.27 mrad"),
+        ("page.roller_length", "70", "must be <= 25.49 mm"),
+        ("fit.shaft", "m6", "must be given: a tolerance"),
+        ("fit.over", "20, x", "temperatures"),
         ("bearing.cage.mass", "-1", "must be >="),
         ("bearing.n_rollers", "99", "overlap"),
         ("bearing.n_rollers", "12.5", "whole number"),
@@ -101,20 +107,36 @@ def test_a_change_of_units_changes_no_quantity() -> None:
 )
 def test_an_error_stands_at_the_field_that_it_names(path: str, text: str, said: str) -> None:
     problems = built(design(**{path.replace(".", "__"): text})).problems
+    path = "fit.housing" if path == "fit.shaft" else path  # what belongs to it is missing
     assert list(problems) == [path]
     assert said in problems[path]
 
 
 @pytest.mark.parametrize(
-    ("path", "text"), [("pair.end_play", "5"), ("pair.diameter", "-1"), ("scene.speed_rpm", "1e12")]
+    ("path", "text", "said"),
+    [
+        ("pair.end_play", "5", "5 mm: must be from -0.6 to 0.6 mm"),
+        ("pair.diameter", "-1", "-1 mm: must be > 0 mm"),
+        ("scene.speed_rpm", "1e12", "must be from"),
+        ("pair.other", "99999", "not in the table"),
+        ("gear.helix_angle_deg", "80", "must be from -60 to 60 deg"),
+    ],
 )
-def test_errors_of_a_pair_stand_at_its_fields(path: str, text: str) -> None:
-    assert path in built(design(True, **{path.replace(".", "__"): text})).problems
+def test_errors_of_a_pair_stand_at_its_fields(path: str, text: str, said: str) -> None:
+    chosen = design(True, **{path.replace(".", "__"): text})
+    if path.startswith("gear."):
+        chosen.acts = "gear"
+        chosen.typed |= {"gear.torque": "100", "gear.pitch_diameter": "80"}
+    assert said in built(chosen).problems[path]
 
 
 def test_what_was_kept_by_another_version_or_hand_is_read_or_left_out() -> None:
-    assert Design.from_json("{").source == "30310"
-    assert Design.from_json("[1]").source == "30310"
+    for text in ("{", "[1]", '{"source": [1]}', '{"case": 5, "source": "case"}', "[" * 100_000, '{"typed": {"page.bore": [1]}}',
+                 '{"wants": 3}', '{"units": {"m": ["mm"]}}', '{"case": {"bearing": 5}, "source": "case"}', "null"):  # fmt: skip
+        kept = Design.from_json(text)
+        assert kept.source in ("named", "case")
+        assert kept.source == "case" or set(kept.typed) <= {"run.revolutions"}
+        assert built(kept).problems  # as no designation was typed, or the case is none
     assert Design.from_json('{"source": "page", "new": 1, "units": {"m": "parsec"}}').units == {}
     assert Design.from_json(design().to_json()) == design()
 
@@ -128,3 +150,38 @@ def test_every_unit_has_its_size() -> None:
         5e-6,
     ]
     assert read("180 deg", "rad", "rad") == pytest.approx(3.14159265358979)
+
+
+def test_a_pair_of_two_bearings_with_gear_fits_and_oil_is_the_program_that_is_shown() -> None:
+    typed = {"named.designation": "HR32208J", "pair.other": "30207", "scene.speed_rpm": "1500", "gear.torque": "200",
+             "gear.pitch_diameter": "80", "gear.helix_angle_deg": "15", "pair.spread": "120", "fit.shaft": "m6",
+             "fit.housing": "N7",
+             "fit.set": "before mounting", "fit.inner_c": "70", "fit.outer_c": "60", "lubricant.cleanliness": "15/12",
+             "lubricant.filtered": "on", "page.Y0": "0.9", "run.revolutions": "1", "pair.end_play": "50 um"}  # fmt: skip
+    chosen = Design(source="named", typed=typed, pair=True, acts="gear")
+    made = built(chosen)
+    assert made.problems == {}
+    names: dict[str, Any] = {}
+    exec(script(chosen, made).partition("result =")[0], names)
+    assert names["subject"] == made.subject
+    assert names["fits"].plays == made.fits.plays
+    left, right = made.subject.bearings
+    assert (left.bearing.ratings.Y0, left.lubricant.cleanliness, right.bearing.name) == (0.9, "15/12", "30207")
+    assert made.subject.loads[0].force[2] == pytest.approx(2 * 200 / 0.08 * 0.2679492, rel=1e-6)  # Ft tan(beta)
+
+
+def test_a_spectrum_may_have_semicolons_and_decimal_commas() -> None:
+    table = "name;share;speed;axial_load\nidle;80,5;800;1500,5\nfull;19,5;1500;9000"
+    chosen = design()
+    chosen.spectrum = table
+    (idle, share, tables), (full, *_) = cases_of(chosen)
+    assert (idle, share, full) == ("idle", 80.5, "full")
+    assert tables["scene"]["axial_load"] == 1500.5
+    chosen.change_unit("N", "kN", all_fields(chosen, built(chosen).base).values())
+    chosen.spectrum = "share,axial_load\n1,1.5"
+    assert cases_of(chosen)[0][2]["scene"]["axial_load"] == pytest.approx(1500.0)
+    for wrong, said in (("share,colour\n1,2", "colour: must be one of the columns"), ("share\nx", "share must be a number"),
+                        ("share,speed\n1", "must have a cell for each column"), ("share,speed\n1,1e12", "speed: 1e+12 rpm: must"),
+                        ("share\n" + "1\n" * 500, "at most 200")):  # fmt: skip
+        chosen.spectrum = wrong
+        assert said in str(checked(chosen))

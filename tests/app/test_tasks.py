@@ -10,10 +10,11 @@ from typing import Any
 import pytest
 
 import trbdyn as trb
-from trbdyn.app.design import Design, built, script
+from trbdyn.app.design import Design, built
 from trbdyn.app.forms import open_case
 from trbdyn.app.jobs import Bench
 from trbdyn.app.outcome import case_of
+from trbdyn.app.program import script
 from trbdyn.app.tasks import TASKS
 from trbdyn.cli import main
 from trbdyn.errors import InputError

@@ -432,10 +432,3 @@ def test_builds_with_fast_math_are_refused(tmp_path: Path, flags: str) -> None:
     refused = flags in FLAGS
     assert (done.returncode != 0) is refused, done.stderr
     assert ("allow fast math" in " ".join(done.stderr.split())) is refused
-
-
-def test_a_pipe_that_nobody_writes_to_is_an_empty_case(tmp_path: Path) -> None:
-    pipe = tmp_path / "case.toml"
-    os.mkfifo(pipe)
-    with pytest.raises(InputError, match="bearing : is required"):
-        load_case(pipe)

@@ -134,9 +134,18 @@ class Browser:
 
     def wait(self, condition: str, seconds: float = 60.0) -> None:
         deadline = time.monotonic() + seconds
-        while not self.js(f"Boolean({condition})"):
+        while not self._holds(condition):
             assert time.monotonic() < deadline, f"never came true: {condition}; errors: {self.errors}"
             time.sleep(0.05)
+
+    def _holds(self, condition: str) -> bool:
+        """Whether a condition is true; not while one page goes on to another."""
+        try:
+            return bool(self.js(f"Boolean({condition})"))
+        except AssertionError as error:
+            if "navigated" not in str(error):
+                raise
+            return False
 
     def frame(self) -> None:
         """Wait until the page has drawn twice."""

@@ -20,4 +20,5 @@ class MissingExtra(TrbError):
 def need_nicegui() -> None:
     """Check that the page can be made."""
     if find_spec("nicegui") is None:
-        raise MissingExtra("the page needs NiceGUI, which is not installed: pip install 'trbdyn[app]'")
+        words = "pip install 'trbdyn[app]', or '.[app]' in a folder with the sources"
+        raise MissingExtra(f"the page needs NiceGUI, which is not installed: {words}")

@@ -21,6 +21,7 @@ PAGE: Final[dict[str, tuple[str, str]]] = {
     "e": ("e, factor", "1"),
     "Y": ("Y, factor (in place of e)", "1"),
     "C0": ("C0, static rating", "N"),
+    "Y0": ("Y0, factor of P0", "1"),
     "Cu": ("Cu or Pu, fatigue limit", "N"),
     "contact_angle_deg": ("contact angle (in place of e)", "deg"),
     "n_rollers": ("Z, number of rollers", "1"),
@@ -55,6 +56,57 @@ PAIR: Final[dict[str, tuple[str, str, Any, str]]] = {
 }
 """What a pair on a shaft has beside its bearings: words, unit, default, meaning."""
 ARRANGEMENTS: Final = ("back to back", "face to face")
+CLEANLINESS: Final = ("13/10", "15/12", "17/14", "19/16", "21/18")
+RELIABILITY: Final = ("90", "95", "96", "97", "98", "99")
+ACTS: Final = {"gear": "a gear", "wheel": "a wheel on the road"}
+"""What may act on a shaft besides a force."""
+GEAR: Final[dict[str, tuple[str, str, Any, str]]] = {
+    "torque": (
+        "torque of the gear",
+        "N m",
+        None,
+        "Of the mesh on this shaft; its sign gives the direction of turning.",
+    ),
+    "pitch_diameter": ("pitch diameter", "m", None, "Of the gear on this shaft."),
+    "pressure_angle_deg": ("pressure angle", "deg", 20.0, "In the normal section."),
+    "helix_angle_deg": (
+        "helix angle",
+        "deg",
+        0.0,
+        "With a positive torque a positive one pushes the shaft to the right.",
+    ),
+    "direction_deg": ("direction to the mesh", "deg", 0.0, "From the axis, from +x towards +y, which is up."),
+    "position": ("place of the gear", "m", 0.0, "Along the shaft, from the middle between the load centres."),
+}
+"""A gear on the shaft, of `ShaftLoad.gear`: words, unit, default, meaning."""
+WHEEL: Final[dict[str, tuple[str, str, Any, str]]] = {
+    "load": ("load of the wheel", "N", None, "On a straight level road."),
+    "rolling_radius": ("rolling radius", "m", None, "Distance of the road from the axis."),
+    "cornering": ("lateral acceleration over g", "1", 0.0, "Positive: the outer wheel of the curve; usual up to 0.25."),
+    "centre_height": ("height of the centre of mass", "m", 0.0, "Of the vehicle."),
+    "track": ("track", "m", None, "Distance of both wheels of the axle; needed with the height."),
+    "position": ("middle plane of the wheel", "m", 0.0, "Along the shaft, from the middle between the load centres."),
+}
+"""A wheel, of `ShaftLoad.wheel`."""
+FIT: Final[dict[str, tuple[str, str, Any, str]]] = {
+    "shaft": ("tolerance of the shaft", "", None, "By ISO 286, for instance m6."),
+    "housing": ("tolerance of the housing", "", None, "By ISO 286, for instance N7."),
+    "set": ("end play was set", "", "mounted", "The play of mounted bearings has the fits in it already."),
+    "bore": ("d, bore", "m", None, "Where the bearing is neither of the table nor of a page."),
+    "outside": ("D, outside diameter", "m", None, "Where the bearing is neither of the table nor of a page."),
+    "width": ("T, width", "m", None, "Where the bearing is neither of the table nor of a page."),
+    "housing_material": ("housing is of", "", "steel", "Aluminium grows twice as much when it becomes warm."),
+    "inner_c": ("shaft and inner rings", "C", None, "Temperature in operation; 20 C where nothing is typed."),
+    "outer_c": ("outer rings and housing", "C", None, "Temperature in operation; 20 C where nothing is typed."),
+    "over": ("preload at the temperatures", "", None, "Of all parts, in C, with commas between: -20, 20, 60, 80."),
+}
+"""Seats and temperatures, of `Mounting` and `Temperatures`."""
+_CHOICES: Final = {
+    "pair.arrangement": ARRANGEMENTS,
+    "fit.set": ("mounted", "before mounting"),
+    "fit.housing_material": ("steel", "aluminium"),
+}
+_TEXTS: Final = ("fit.shaft", "fit.housing", "fit.over")
 SHAPE: Final = "bearing.cage.pocket.shape"
 SCENE: Final = ("speed_rpm", "axial_load", "radial_load", "radial_direction_deg", "misalignment_x", "misalignment_y",
                 "outer_speed_rpm", "unloaded")  # fmt: skip
@@ -92,9 +144,50 @@ def page_fields() -> list[Field]:
 
 def pair_fields() -> list[Field]:
     """The fields of a pair on a shaft."""
+    other = "Designation of the right bearing, where it differs from the left one."
     return [
-        Field(f"pair.{name}", words, si, ARRANGEMENTS if name == "arrangement" else (), False, False, default, meaning)
-        for name, (words, si, default, meaning) in PAIR.items()
+        *_listed("pair", PAIR),
+        Field("pair.other", "right bearing", text=True, meaning=other),
+        *_listed("gear", GEAR),
+        *_listed("wheel", WHEEL),
+    ]
+
+
+def _listed(prefix: str, table: dict[str, tuple[str, str, Any, str]]) -> list[Field]:
+    return [
+        Field(
+            path=f"{prefix}.{name}",
+            words=words,
+            unit="" if si == "1" else si,
+            choices=_CHOICES.get(f"{prefix}.{name}", ()),
+            text=f"{prefix}.{name}" in _TEXTS,
+            default=default,
+            meaning=meaning,
+        )
+        for name, (words, si, default, meaning) in table.items()
+    ]
+
+
+def named_fields() -> list[Field]:
+    """The designation, from which all dimensions follow."""
+    words = "For instance 32208, 30310 or LM67048/LM67010, with or without the letters of a maker."
+    return [Field("named.designation", "designation", text=True, meaning=words)]
+
+
+def fit_fields() -> list[Field]:
+    """Seats and temperatures."""
+    return _listed("fit", FIT)
+
+
+def rating_fields() -> list[Field]:
+    """Dirt in the oil, and the reliability of a life."""
+    dirt = "ISO 4406; where nothing is chosen, the ratings assume 17/14 and say so."
+    return [
+        Field("lubricant.cleanliness", "cleanliness of the oil", choices=CLEANLINESS, meaning=dirt),
+        Field("lubricant.filtered", "oil circulates through a filter", choices=("on", "off"), default=False),
+        Field(
+            "rating.reliability", "reliability (%)", choices=RELIABILITY, default="90", meaning="Of the rating lives."
+        ),
     ]
 
 

@@ -1,9 +1,12 @@
 """Who may talk to the page: a browser of this machine that has the token, and no page of a stranger in that browser.
 
-The token stands in the address that opens the page, once; then it is a cookie that the browser sends for requests of this page
-alone (SameSite=Strict) and shows to no script (HttpOnly). A request is answered if its host is this machine, the page that it
-comes from, if it tells one, is this one, and it has the token; a WebSocket likewise. Where the browser tells whose page has asked
-(Sec-Fetch-Site), this must be no other one: a program on another port of this machine is the same site for cookies.
+The token stands in the address that opens the page, and opens it once. What opens it from then on is a cookie with a secret of
+its own, which the browser sends for requests of this page alone (SameSite=Strict) and shows to no script (HttpOnly). Browsers
+send cookies to every port of a machine, so that a program of another user on another port would get it, too: the whole page lies
+below a path that nobody can guess, and the cookie belongs to this path. A request is answered if its host is this machine, the
+page that it comes from, if it tells one, is this one, and it has the cookie; a WebSocket likewise. Where the browser tells whose
+page has asked (Sec-Fetch-Site), this must be no other one: a program on another port of this machine is the same site for
+cookies.
 """
 
 from __future__ import annotations
@@ -30,19 +33,24 @@ SAFE: Final = [
 ]
 """Headers of every answer."""
 PLAIN: Final = (b"content-type", b"text/plain; charset=utf-8")
-ENTER: Final = b"<!doctype html><meta http-equiv='refresh' content='0;url=/'><title>trbdyn</title>"
+ENTER: Final = "<!doctype html><meta http-equiv='refresh' content='0;url={path}/'><title>trbdyn</title>"
 """Goes on to the page without the token in its address; a redirect would lose the cookie where a link led here."""
 
 
 class Guard:
-    """Lets an ASGI application on a port answer only what comes from the page itself. The token is drawn where none is given."""
+    """Lets an ASGI application on a port answer only what comes from the page itself.
 
-    def __init__(self, app: Asgi, port: int, token: str = "") -> None:
-        self._app = app
-        self.token = token or secrets.token_urlsafe(32)
+    `used` is called whenever the token has opened the page; `token` is a new one then.
+    """
+
+    def __init__(self, app: Asgi, port: int, used: Callable[[], None] = lambda: None) -> None:
+        self._app, self._used = app, used
+        self.token = secrets.token_urlsafe(32)
+        self.path = f"/{secrets.token_urlsafe(16)}"
+        self._secret = secrets.token_urlsafe(32)
+        self._cookie = f"trbdyn_{secrets.token_hex(8)}"
         self._hosts = {f"{host}:{port}" for host in HOSTS}
         self._origins = {f"http://{host}" for host in self._hosts}
-        self._cookie = f"trbdyn_{port}"  # browsers share cookies between ports
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] not in ("http", "websocket"):
@@ -51,18 +59,21 @@ class Guard:
         headers = {name.decode("latin-1").lower(): value.decode("latin-1") for name, value in scope["headers"]}
         if not self._from_here(headers, scope["type"] == "websocket"):
             await _refuse(scope, send, "this page answers only to the address that trbdyn app has printed")
-        elif self._is_token(self._of_cookie(headers)) and headers.get("sec-fetch-site", "none") in (
-            "none",
-            "same-origin",
+        elif (
+            _is_same(self._of_cookie(headers), self._secret)
+            and scope["path"].startswith(f"{self.path}/")
+            and headers.get("sec-fetch-site", "none") in ("none", "same-origin")
         ):
-            await self._app(scope, receive, _with_headers(send))
-        elif scope["type"] == "http" and scope["path"] == "/" and self._is_token(_of_query(scope)):
-            cookie = f"{self._cookie}={self.token}; Path=/; HttpOnly; SameSite=Strict"
-            await _answer(send, 200, ENTER, [(b"content-type", b"text/html"), (b"set-cookie", cookie.encode())])
+            await self._app({**scope, "root_path": self.path}, receive, _with_headers(send))
+        elif scope["type"] == "http" and scope["path"] == "/" and _is_same(_of_query(scope), self.token):
+            self.token = secrets.token_urlsafe(32)
+            cookie = f"{self._cookie}={self._secret}; Path={self.path}/; HttpOnly; SameSite=Strict"
+            body = ENTER.format(path=self.path).encode()
+            await _answer(send, 200, body, [(b"content-type", b"text/html"), (b"set-cookie", cookie.encode())])
+            self._used()
         else:
-            await _refuse(
-                scope, send, "open this page by the whole address that trbdyn app has printed, with its token"
-            )
+            why = "open this page by the whole newest address that trbdyn app has printed; each one opens it once"
+            await _refuse(scope, send, why)
 
     def _from_here(self, headers: dict[str, str], is_socket: bool) -> bool:
         """Whether host and origin are those of this page: another name of this machine may be a stranger's."""
@@ -71,15 +82,16 @@ class Guard:
             return False
         return origin is None or origin in self._origins
 
-    def _is_token(self, given: str) -> bool:
-        return hmac.compare_digest(given.encode(), self.token.encode())
-
     def _of_cookie(self, headers: dict[str, str]) -> str:
         try:
             found = SimpleCookie(headers.get("cookie", "")).get(self._cookie)
         except CookieError:
             return ""
         return "" if found is None else found.value
+
+
+def _is_same(given: str, secret: str) -> bool:
+    return hmac.compare_digest(given.encode(), secret.encode())
 
 
 def _of_query(scope: Scope) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import os
 import re
 import time
 from dataclasses import dataclass, field
@@ -13,11 +14,11 @@ from typing import Any, Final
 
 from trbdyn.app.design import Design
 from trbdyn.app.tasks import work
-from trbdyn.base.own_files import write_whole
+from trbdyn.base.own_files import LONGEST_NAME, read_text, write_whole
 from trbdyn.errors import FileError
 
 GRACE: Final = 20.0
-"""Time that a task has to end after it was told to (s)."""
+"""Time that a task has to end when the page ends (s)."""
 META: Final = "about.json"
 DESIGN: Final = "design.json"
 
@@ -34,7 +35,7 @@ class Job:
         self.text, self.state = "starting", "running"
         self.problems: dict[str, str] = {}
         self.answer: dict[str, Any] = {}
-        self._stopped_at = 0.0
+        self.stopping = False  # whether it was told to stop
         self._process = context.Process(target=work, args=(says, heard, kind, str(folder), arguments))
         self._process.start()
         says.close()
@@ -54,9 +55,6 @@ class Job:
         except (EOFError, OSError):
             self._process.join(5.0)
             self.state, self.text = "failed", f"its process ended, exit code {self._process.exitcode}"
-        if self._stopped_at and time.monotonic() - self._stopped_at > GRACE:
-            self._process.kill()
-            self.state, self.text = "stopped", "it did not answer and was ended"
         return not self.running
 
     def _take(self, word: str, *rest: Any) -> bool:
@@ -64,7 +62,7 @@ class Job:
         if word == "progress":
             self.share, self.text = rest
             return True
-        self.state, self.text = "stopped" if self._stopped_at and word == "done" else word, rest[0]
+        self.state, self.text = "stopped" if self.stopping and word == "done" else word, rest[0]
         if word == "failed":
             self.problems = rest[1]
         else:
@@ -73,15 +71,24 @@ class Job:
         return False
 
     def stop(self) -> None:
-        """Stop it as Ctrl-C does: a run keeps what it has recorded."""
-        if self.running:
-            self._stopped_at = self._stopped_at or time.monotonic()
-            with contextlib.suppress(OSError):
-                self._tells.send("stop")
+        """Stop it as Ctrl-C does: a run keeps what it has recorded, and its pictures and report are made, however long that
+        takes. Told a second time it is ended at once.
+        """
+        if not self.running:
+            return
+        if self.stopping:
+            self._process.kill()
+            self._process.join(5.0)
+            self.state, self.text = "stopped", "ended at once: what it had not written is lost"
+            return
+        self.stopping = True
+        with contextlib.suppress(OSError):
+            self._tells.send("stop")
 
     def end(self) -> None:
         """End it now, as the page ends."""
-        self.stop()
+        if not self.stopping:
+            self.stop()
         self._process.join(GRACE if self.running else 1.0)
         if self._process.is_alive():
             self._process.kill()
@@ -113,9 +120,9 @@ class Bench:
             (root / "runs").mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise FileError(f"{root}: the folder cannot be made: {error.strerror or error}") from None
-        bench = cls(root)
-        with contextlib.suppress(OSError, UnicodeDecodeError):
-            bench.design = Design.from_json((root / DESIGN).read_text(encoding="utf-8"))
+        bench = cls(root, Design.first())
+        with contextlib.suppress(OSError, ValueError):
+            bench.design = Design.from_json(read_text(root / DESIGN))
         return bench
 
     def changed(self) -> int:
@@ -157,7 +164,7 @@ class Bench:
             return
         self.version += 1
         path = self.job.folder / META
-        about = json.loads(path.read_text(encoding="utf-8"))
+        about = _table(path)
         if self.job.kind != "pdf":
             about |= {"state": self.job.state, "text": self.job.text} | self.job.answer
             write_whole(path, json.dumps(about), overwrite=True)
@@ -167,13 +174,26 @@ class Bench:
         found = []
         for folder in sorted((self.root / "runs").iterdir(), reverse=True):
             with contextlib.suppress(OSError, ValueError, KeyError):
-                about = json.loads((folder / META).read_text(encoding="utf-8"))
+                about = _table(folder / META)
                 found.append(Kept(folder.name, str(about["title"]), str(about["kind"]), about))
         return found
 
     def file(self, name: str, inside: str) -> Path | None:
         """A file of a folder that was made here; None for anything else, such as a path that leads out of it."""
+        if "\0" in name + inside or len(os.fsencode(name + inside)) > LONGEST_NAME:
+            return None
         folder = self.root / "runs" / name
         path = (folder / inside).resolve()
         safe = path.is_relative_to(folder.resolve()) and folder.resolve().parent == (self.root / "runs").resolve()
         return path if safe and path.is_file() else None
+
+
+def _table(path: Path) -> dict[str, Any]:
+    """What a file of JSON says of a run; a ValueError if it is no table."""
+    try:
+        found = json.loads(read_text(path))
+    except RecursionError:
+        raise ValueError("it is nested too deeply") from None
+    if not isinstance(found, dict):
+        raise ValueError("it is no table of named values")
+    return found

@@ -8,10 +8,13 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 from nicegui import events, ui
 
-from trbdyn.app.design import Built, all_fields, built, run_fields, script
+from trbdyn.app.design import Built, all_fields, built, over_of, run_fields
 from trbdyn.app.forms import show_fields
 from trbdyn.app.jobs import Kept
+from trbdyn.app.load_cases import cases_of
+from trbdyn.app.program import script
 from trbdyn.app.questions import QUESTIONS
+from trbdyn.app.tasks import Also
 from trbdyn.reporting import converter
 from trbdyn.run.case_text import case_text, tables_text
 
@@ -23,10 +26,9 @@ MOST_VALUES: Final = 50
 SWEEP_AXES: Final = ("scene.", "bearing.", "lubricant.temperature_c", "page.", "pair.", "effects.")
 
 
-def show_run(page: Page) -> None:
-    """What the user wants to know, length and accuracy, run and stop."""
+def show_questions(page: Page) -> None:
+    """What the user wants to know."""
     design = page.bench.design
-    ui.label("What do you want to know?").classes("text-lg font-medium")
     with ui.row():
         for name, question in QUESTIONS.items():
 
@@ -37,19 +39,30 @@ def show_run(page: Page) -> None:
             box = ui.checkbox(question.words, value=name in design.wants, on_change=ask)
             box.props["data-path"] = f"want.{name}"
 
-    def plan(event: events.ValueChangeEventArguments[Any]) -> None:
-        design.planned = bool(event.value)
-        page.restructured()
 
-    words = "find effects, accuracy and length for it (trbdyn.plan): short runs of about 15 s come first"
-    ui.switch(words, value=design.planned, on_change=plan).props["data-path"] = "planned"
-    if not design.planned:
-        show_fields(page, run_fields())
-    with ui.row().classes("items-center w-full"):
+def show_controls(page: Page) -> None:
+    """Run and stop, on every tab."""
+    with ui.row().classes("items-center w-full gap-2"):
         page.run_button = ui.button("Run", on_click=lambda: start(page)).props('no-caps data-path="run"')
         page.stop_button = ui.button("Stop", on_click=lambda: stop(page)).props('no-caps flat data-path="stop"')
         page.progress = ui.linear_progress(show_value=False).classes("w-48")
         page.said = ui.label().props('data-path="said"')
+
+
+def show_run(page: Page) -> None:
+    """Length and accuracy, and the program that does the same."""
+    design = page.bench.design
+
+    def plan(event: events.ValueChangeEventArguments[Any]) -> None:
+        design.planned = bool(event.value)
+        page.restructured()
+
+    words = (
+        "find effects, accuracy and length for what you want to know (trbdyn.plan): short runs of about 15 s come first"
+    )
+    ui.switch(words, value=design.planned, on_change=plan).props["data-path"] = "planned"
+    if not design.planned:
+        show_fields(page, run_fields())
     with ui.element("div").classes("trb-wide"):
         with ui.expansion("the same in Python", value=False).props('data-path="show.script"').classes("w-full"):
             page.script = ui.label().classes("trb-text").props('data-path="script"')
@@ -73,7 +86,20 @@ def start(page: Page) -> None:
     if made.problems or made.subject is None:
         ui.notify("there is something to correct first: see the fields in red", type="negative")
         return
-    arguments = {"tables": made.tables, "wants": list(design.wants), "planned": design.planned}
+    try:
+        cases = cases_of(design)
+    except ValueError as error:
+        page.spectrum.error = str(error)
+        ui.notify(f"spectrum of load cases: {error}", type="negative", multi_line=True)
+        return
+    also = Also(
+        reliability=float(made.values.get("rating.reliability", 90.0)),
+        spectrum=tuple(cases),
+        fits=made.fits,
+        unseated=made.unseated,
+        over=tuple(over_of(made)),
+    )
+    arguments = {"tables": made.tables, "wants": list(design.wants), "planned": design.planned, "also": also}
     texts = {"case.toml": case_of(made), "script.py": script(design, made)}
     if page.bench.start("run", title(made), arguments, texts) is None:
         ui.notify("another task is under way", type="warning")
@@ -98,11 +124,16 @@ def tell_run(page: Page) -> None:
     running = job is not None and job.running
     page.run_button.set_enabled(not running and not page.built.problems)
     page.stop_button.set_enabled(running)
+    page.stop_button.text = "End at once" if job is not None and job.running and job.stopping else "Stop"
     page.progress.set_visibility(running)
     page.progress.props(f"indeterminate={str(job is not None and job.share is None).lower()}")
     page.progress.value = 0.0 if job is None or job.share is None else round(job.share, 3)
     page.said.text = (
-        "" if job is None else f"{job.kind}: {job.text}" if running else f"{job.kind} {job.state}: {job.text}"
+        ""
+        if job is None
+        else f"{job.kind}{', stopping' if job.stopping else ''}: {job.text}"
+        if running
+        else f"{job.kind} {job.state}: {job.text}"
     )
     if job is not None and job.problems:
         page.said.text += " " + "; ".join(f"{path}: {text}" for path, text in job.problems.items())
@@ -147,7 +178,7 @@ def show_results(page: Page) -> None:
 
 
 def _show_kept(page: Page, one: Kept) -> None:
-    address, about = f"/files/{one.name}", one.about
+    address, about = f"files/{one.name}", one.about
     ui.label(f"{about.get('state', '')}: {about.get('text', '')}").props('data-path="result.state"')
     with ui.row():
         for name, words in (("report.html", "report"), ("view.html", "3-D view alone"), ("script.py", "Python"),
@@ -156,12 +187,12 @@ def _show_kept(page: Page, one: Kept) -> None:
                 ui.link(words, f"{address}/{name}", new_tab=name.endswith(".html")).props(f'data-path="file.{name}"')
         if page.bench.file(one.name, "report.html") and not page.bench.file(one.name, "report.pdf") and converter():
             again = {"page": "report.html"}
-            ui.link("make a PDF").on("click", lambda: page.bench.again("pdf", one.name, again)).classes(
-                "cursor-pointer"
-            )
+            made = ui.link("make a PDF").on("click", lambda: page.bench.again("pdf", one.name, again))
+            made.classes("cursor-pointer").props('data-path="make.pdf"')
     if one.kind == "sweep":
         _show_sweep(page, one, address)
         return
+    _show_verdict(about.get("verdict"))
     folder = page.bench.root / "runs" / one.name
     numbers = _numbers(page, one)
     if wanted := [
@@ -187,6 +218,31 @@ def _show_kept(page: Page, one: Kept) -> None:
     for name, rows in numbers.items():
         with ui.expansion(f"all numbers {name}".strip()).classes("w-full").props('data-path="numbers"'):
             _table(["quantity", "value", "unit"], [row[:3] for row in rows])
+
+
+COLOURS: Final = {
+    "good": "border-green-700",
+    "care": "border-amber-600",
+    "bad": "border-red-700",
+    "plain": "border-gray-400",
+}
+
+
+def _show_verdict(judged: Any) -> None:
+    """What the run says, in sentences: life, cage, hits, torque, films."""
+    if not isinstance(judged, dict):
+        return
+    for name, sentences in judged.items():
+        if len(judged) > 1:
+            ui.label(name).classes("font-medium")
+        with ui.element("div").classes("trb-wide").props('data-path="verdict"'):
+            for grade, head, text in sentences:
+                with ui.card().classes(f"p-2 border-l-4 {COLOURS.get(grade, '')}").props("flat bordered"):
+                    ui.label(f"{head}{GRADES.get(grade, '')}").classes("font-medium")
+                    ui.label(text).classes("text-sm")
+
+
+GRADES: Final = {"good": ": good", "care": ": take care", "bad": ": not good"}
 
 
 def _numbers(page: Page, one: Kept) -> dict[str, list[list[str]]]:

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Final
 
-from nicegui import events, ui
+from nicegui import events, run, ui
 
 from trbdyn.app import forms, outcome, units
 from trbdyn.app.design import Built, all_fields, built
 from trbdyn.app.fields import SHAPE, Field
 from trbdyn.app.jobs import Bench
+from trbdyn.app.load_cases import checked
 from trbdyn.errors import TrbError
 
 TICK: Final = 0.4
@@ -28,6 +29,7 @@ STYLE: Final = """
 img, iframe { max-width: 100%; }
 """
 TABS: Final = {
+    "start": "Start",
     "bearing": "Bearing",
     "operation": "Operation",
     "effects": "Effects",
@@ -36,6 +38,24 @@ TABS: Final = {
     "compare": "Compare",
     "sweep": "Sweep",
 }
+
+
+KINDS: Final = {"m": "lengths", "N": "forces", "deg": "angles"}
+"""What units are chosen for."""
+BACK: Final = """
+function trbTab() {
+  try { emitEvent('tab', location.hash.slice(1) || 'start'); window.trbReady = true; }
+  catch { setTimeout(trbTab, 200); }  // the page is still being made
+}
+addEventListener('popstate', trbTab);
+"""
+"""Goes to the tab that the address names: after a reload, and by the buttons that go back and forth."""
+
+
+def _note_tab(event: events.ValueChangeEventArguments[Any]) -> None:
+    """Write the tab into the address."""
+    name = f"#{event.value}"
+    ui.run_javascript(f"if ((location.hash || '#start') !== '{name}') history.pushState(null, '', '{name}')")
 
 
 class Page:
@@ -50,12 +70,14 @@ class Page:
     results: Any
     comparison: Any
     sweeps: Any
+    spectrum: Any
 
     def __init__(self, bench: Bench) -> None:
         self.bench = bench
         self.built: Built = built(bench.design)
         self.widgets: dict[str, Any] = {}
         self._fields: dict[str, Field] = {}
+        self.folds: dict[str, Any] = {}  # what a field is folded away in
         self._seen = bench.version
         self._drawn_of: object = None
         self._shown_job: object = None
@@ -70,15 +92,20 @@ class Page:
             for si, choices in units.CHOSEN.items():
                 self._unit_choice(si, choices)
             self._status = ui.label().classes("text-sm")
+        self._part(outcome.show_controls)
         with ui.tabs().props("dense no-caps outside-arrows mobile-arrows align=left").classes("w-full") as tabs:
             for name, words in TABS.items():
                 ui.tab(name, words).props(f'data-path="tab.{name}"')
         self._general = ui.label().classes("text-red-700 trb-text")
-        with ui.tab_panels(tabs, value="bearing", animated=False).props("keep-alive").classes("w-full"):
+        ui.on("tab", lambda event: tabs.set_value(event.args) if event.args in TABS else None)
+        ui.add_body_html(f"<script>{BACK}</script>")
+        with ui.tab_panels(tabs, value="start", animated=False).props("keep-alive").classes("w-full"):
+            with ui.tab_panel("start"):
+                self._part(forms.show_start)
+                self._shaft = ui.element("img")
             with ui.tab_panel("bearing"):
-                self._part(forms.show_source)
                 with ui.element("div").classes("trb-wide"):
-                    self._drawings = [ui.element("img") for _ in range(2)]
+                    self._drawings = [*(ui.element("img") for _ in range(2)), self._shaft]
                 self._inside = self._part(forms.show_bearing)
             for name, show in (
                 ("operation", forms.show_operation),
@@ -94,8 +121,10 @@ class Page:
             ):
                 with ui.tab_panel(name):
                     self._part(show)
+        tabs.on_value_change(_note_tab)
         self._tell()
         ui.timer(TICK, self._tick)
+        ui.timer(0.2, lambda: ui.run_javascript("trbTab()"), once=True)
 
     def _part(self, show: Callable[[Page], None]) -> Callable[[], Any]:
         """A part of the page that can be shown again."""
@@ -113,7 +142,9 @@ class Page:
                 self.restructured()
 
         select = ui.select(list(choices), value=design.unit(si), on_change=choose)
-        select.props("dense dark borderless options-dense").props(f'data-path="unit.{si}"')
+        select.props("dense dark borderless options-dense").props(
+            f'data-path="unit.{si}" aria-label="unit of {KINDS[si]}"'
+        )
 
     def place(self, one: Field, widget: Any) -> None:
         """Show unit and value that a field has where nothing is typed; only what has changed goes to the browser, which would
@@ -164,6 +195,7 @@ class Page:
 
     def _again(self) -> None:
         self.widgets.clear()
+        self.folds.clear()
         for refresh in self._parts:
             refresh()
         self._tell()
@@ -176,23 +208,39 @@ class Page:
                 self.place(self._fields[path], widget)
             if hasattr(widget, "error"):
                 widget.error = problems.get(path)
-        rest = [text if not path else f"{path}: {text}" for path, text in problems.items() if path not in self.widgets]
+            if path in problems and path in self.folds:
+                self.folds[path].open()
+        words = {path: one.words for path, one in self._fields.items()}
+        shown = {path for path, widget in self.widgets.items() if hasattr(widget, "error")}
+        rest = [f"{words.get(path, path)}: {text}".lstrip(": ") for path, text in problems.items() if path not in shown]
         self._general.text = "\n".join(rest)
         names = {path.split(".")[0] for path in problems if path in self.widgets}
-        where = {"page": "Bearing", "bearing": "Bearing", "effects": "Effects", "run": "Run"}
-        said = ", ".join(sorted({where.get(name, "Operation") for name in names}))
+        where = {"page": "Start", "named": "Start", "bearing": "Bearing", "effects": "Effects", "run": "Run"}
+        asked = set(forms.ASKED[forms.machine_of(self)]) | {"pair.other"}
+        said = {where.get(name, "Operation") for name in names - {one.split(".")[0] for one in asked & problems.keys()}}
+        places = ", ".join(sorted(said | ({"Start"} if asked & problems.keys() else set())))
         self._status.text = (
-            f"{len(problems)} to correct{f': {said}' if said else ''}" if problems else "inputs complete"
+            f"{len(problems)} to correct{f': {places}' if places else ''}" if problems else "inputs complete"
         )
         outcome.tell_run(self)
         outcome.tell_program(self)
 
+    def spectrum_changed(self) -> None:
+        """Take in the table of load cases."""
+        self.spectrum.error = checked(self.bench.design)
+        self._seen = self.bench.changed()
+
     async def open_case(self, event: events.UploadEventArguments) -> None:
         """Take a case file in the place of the bearing."""
         try:
-            tables = forms.open_case(await event.file.read())
+            tables = await run.io_bound(forms.open_case, await event.file.read())
         except (TrbError, ValueError) as error:
-            ui.notify(f"this is no case that can be used: {error}", type="negative", multi_line=True, timeout=20000)
+            ui.notify(
+                f"this is no case that can be used: {str(error)[:2000]}",
+                type="negative",
+                multi_line=True,
+                timeout=20000,
+            )
             return
         design = self.bench.design
         design.case, design.source, design.typed, design.pair = tables, "case", {}, False
@@ -211,8 +259,10 @@ class Page:
                 outcome.refresh(self)
         outcome.tell_run(self)
         bearing = self.built.bearing
-        if bearing is not None and bearing != self._drawn_of:
-            self._drawn_of = bearing
+        shown = (bearing, self.built.subject if self.bench.design.pair else None)
+        if bearing is not None and shown != self._drawn_of:
+            self._drawn_of = shown
+            self._shaft.set_visibility(self.bench.design.pair)
             for element, source in zip(self._drawings, await forms.draw(self.built), strict=False):
                 element.props["src"] = source
                 element.update()

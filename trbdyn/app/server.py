@@ -1,11 +1,11 @@
-"""The server of the page: on this machine alone, with a token in its address."""
+"""The server of the page: on this machine alone, opened by a token that is valid once."""
 
 from __future__ import annotations
 
 import socket
 import webbrowser
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import uvicorn
 from fastapi import FastAPI
@@ -15,8 +15,13 @@ from nicegui import ui
 from trbdyn.app.guard import HOSTS, Guard
 from trbdyn.app.jobs import Bench
 from trbdyn.app.page import show_page
+from trbdyn.base.own_files import create
 from trbdyn.errors import FileError
 
+DOOR: Final = "open.html"
+"""A file that only this user can read, which leads the browser to the page: every user of a machine can read a browser's command
+line, so that the address with its token is not there.
+"""
 OF_STRANGERS = "sandbox allow-scripts; default-src 'none'; img-src data: blob:; style-src 'unsafe-inline'; \
 script-src 'unsafe-inline' 'unsafe-eval' data: blob:; worker-src blob:; font-src data:; connect-src data: blob:; \
 frame-ancestors 'self'"
@@ -55,14 +60,34 @@ def serve(folder: Path, *, port: int = 0, browser: bool = True) -> None:
     except (OSError, OverflowError) as error:
         raise FileError(f"port {port}: cannot be used: {getattr(error, 'strerror', None) or error}") from None
     port = listener.getsockname()[1]
-    guard = Guard(application(bench), port)
-    address = f"http://{HOSTS[0]}:{port}/?token={guard.token}"
-    print(f"trbdyn app: {address}\nIt keeps everything in {folder}. Ctrl-C ends it.", flush=True)
+    door = folder / DOOR
+
+    def address() -> str:
+        return f"http://{HOSTS[0]}:{port}/?token={guard.token}"
+
+    def used() -> None:
+        door.unlink(missing_ok=True)
+        print(f"opened; for another browser: {address()}", flush=True)
+
+    guard = Guard(application(bench), port, used)
+    print(f"trbdyn app: {address()}\nIt keeps everything in {folder}. Ctrl-C ends it.", flush=True)
     if browser:
-        webbrowser.open(address)
+        _lead(door, address())
+        webbrowser.open(door.as_uri())
     options: dict[str, Any] = {"log_level": "warning", "access_log": False, "server_header": False}
     try:
         uvicorn.Server(uvicorn.Config(guard, **options)).run(sockets=[listener])
     finally:
+        door.unlink(missing_ok=True)
         if bench.job is not None:
             bench.job.end()
+
+
+def _lead(door: Path, address: str) -> None:
+    """Write the file that leads to an address, for this user alone."""
+    try:
+        door.unlink(missing_ok=True)
+        with create(door, 0o600) as stream:
+            stream.write(f"<!doctype html><meta http-equiv='refresh' content='0;url={address}'>".encode())
+    except OSError as error:
+        raise FileError(f"{door}: cannot be written: {error.strerror or error}") from error

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import _thread
+import contextlib
 import json
 import os
 import signal
@@ -10,6 +11,7 @@ import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, Final, cast
@@ -17,9 +19,12 @@ from typing import Any, Final, cast
 import numpy as np
 
 from trbdyn.app.questions import OF_SHAFT, QUESTIONS, want_of
+from trbdyn.base.display import displayed
 from trbdyn.base.own_files import write_whole
+from trbdyn.base.shown import Displayed
 from trbdyn.errors import InputError, TrbError
-from trbdyn.reporting import report, save_pdf
+from trbdyn.model.spectrum import LoadCase, Spectrum
+from trbdyn.reporting import judgement, report, save_pdf
 from trbdyn.results.assembly import load
 from trbdyn.results.numbers import find
 from trbdyn.run.case_text import case_text
@@ -28,8 +33,10 @@ from trbdyn.run.rating import rating
 from trbdyn.run.simulation import Simulation
 from trbdyn.run.toml_assembly import subject_from_dict
 from trbdyn.statics.assembly import stiffness
+from trbdyn.statics.fit import Fit
 from trbdyn.study.gather import listed_in
 from trbdyn.study.planning import plan
+from trbdyn.study.preload_over import preload_over
 from trbdyn.study.runner import run as run_study
 from trbdyn.viewer import view
 
@@ -46,19 +53,25 @@ def work(said: Connection, heard: Connection, kind: str, folder: str, arguments:
     threading.Thread(target=_listen, args=(heard,), daemon=True).start()
 
     def say(share: float | None, text: str) -> None:
-        said.send(("progress", share, text))
+        with contextlib.suppress(OSError):  # the page has ended, and `_listen` ends this process
+            said.send(("progress", share, text))
 
+    with contextlib.suppress(OSError, KeyboardInterrupt):
+        said.send(_outcome(kind, Path(folder), say, arguments))
+
+
+def _outcome(kind: str, folder: Path, say: Say, arguments: dict[str, Any]) -> tuple[Any, ...]:
+    """Do a task; gives what is told of how it ended."""
     try:
-        said.send(("done", *TASKS[kind](Path(folder), say, **arguments)))
+        return ("done", *TASKS[kind](folder, say, **arguments))
     except KeyboardInterrupt:
-        said.send(("stopped", "stopped", {}))
+        return ("stopped", "stopped", {})
     except InputError as error:
-        problems = {".".join(map(str, one.path)): one.allowed for one in error.problems}
-        said.send(("failed", str(error), problems))
+        return ("failed", str(error), {".".join(map(str, one.path)): one.allowed for one in error.problems})
     except (TrbError, OSError, MemoryError) as error:
-        said.send(("failed", str(error) or type(error).__name__, {}))
+        return ("failed", str(error) or type(error).__name__, {})
     except Exception as error:
-        said.send(("failed", f"a fault of trbdyn itself, please report it: {type(error).__name__}: {error}", {}))
+        return ("failed", f"a fault of trbdyn itself, please report it: {type(error).__name__}: {error}", {})
 
 
 def _listen(heard: Connection) -> None:
@@ -81,8 +94,45 @@ def _interrupt() -> None:
         _thread.interrupt_main()
 
 
+@dataclass(frozen=True)
+class Also:
+    """What is computed besides a run."""
+
+    reliability: float = 90.0  # of rating lives (%)
+    spectrum: tuple[tuple[str, float, dict[str, Any]], ...] = ()  # name, share of time and tables of load cases
+    fits: Fit | None = None  # how the bearings sit
+    unseated: Any = None  # the subject with the plays that were typed
+    over: tuple[float, ...] = ()  # temperatures at which the preload is wanted (C)
+
+    def tables(self, say: Say, texts: dict[str, str]) -> list[Displayed]:
+        """Further tables of the report; as texts for the page, or why there is none."""
+        found: list[Displayed] = []
+
+        def add(name: str, make: Callable[[], Displayed]) -> None:
+            say(1.0, name)
+            try:
+                found.append(made := make())
+                texts[name] = str(made)
+            except TrbError as error:
+                texts[name] = str(error)
+
+        if self.fits is not None:
+            add("fits", lambda: cast(Displayed, self.fits))
+        if self.fits is not None and self.over:
+            seats = {name: one.mounting for name, one in self.fits.items()}
+            how: dict[str, Any] = {"reliability": self.reliability}
+            add(
+                "preload over temperature",
+                lambda: preload_over(self.unseated, seats.get("", seats), list(self.over), **how),
+            )
+        if self.spectrum:
+            cases = [LoadCase(name, share, subject_from_dict(case)[0]) for name, share, case in self.spectrum]
+            add("spectrum", lambda: rating(Spectrum(cases), reliability=self.reliability))
+        return found
+
+
 def _run(
-    folder: Path, say: Say, *, tables: dict[str, Any], wants: list[str], planned: bool
+    folder: Path, say: Say, *, tables: dict[str, Any], wants: list[str], planned: bool, also: Also | None = None
 ) -> tuple[str, dict[str, Any]]:
     """Run a case, planned for some questions where that is wanted; write records, pictures, report and view."""
     subject, options = subject_from_dict(tables)
@@ -103,10 +153,8 @@ def _run(
     def look(running: Simulation) -> None:
         if time.monotonic() - last[0] > PAUSE:
             last[0] = time.monotonic()
-            say(
-                (running.time - begin) / (end - begin),
-                f"{1e3 * (running.time - begin):.4g} ms of {1e3 * (end - begin):.4g} ms",
-            )
+            passed, whole = running.time - begin, end - begin
+            say(passed / whole, f"{' '.join(displayed(passed, 's', like=whole))} of {' '.join(displayed(whole, 's'))}")
 
     result = simulation.run(
         revolutions=options.revolutions,
@@ -115,11 +163,11 @@ def _run(
         output=folder / "run.h5",
         callback=look,
     )
-    return _shown(folder, say, result, subject, wants, extra)
+    return _shown(folder, say, result, subject, wants, extra, also or Also())
 
 
 def _shown(
-    folder: Path, say: Say, result: Any, subject: Any, wants: list[str], extra: dict[str, Any]
+    folder: Path, say: Say, result: Any, subject: Any, wants: list[str], extra: dict[str, Any], also: Also
 ) -> tuple[str, dict[str, Any]]:
     """Everything that the page shows of a result."""
     from trbdyn.plot import all as save_pictures
@@ -133,19 +181,24 @@ def _shown(
     of_shaft = OF_SHAFT if len(parts) > 1 else ()
     chosen = [*of_shaft, *(name for name in chosen if name in drawable(result.parts[0]))]
     save_pictures(result, folder / "pictures", chosen)
-    texts = {}
+    texts: dict[str, str] = {}
+    tables = also.tables(say, texts)
     for table in dict.fromkeys(table for name in wants for table in QUESTIONS[name].tables):
         say(1.0, table)
         try:
-            texts[table] = str(rating(result) if table == "rating" else stiffness(subject))
+            texts[table] = str(
+                rating(result, reliability=also.reliability) if table == "rating" else stiffness(subject)
+            )
         except TrbError as error:
             texts[table] = str(error)
     say(1.0, "3-D view")
     view(result, folder / "view.html")
     say(1.0, "report")
-    report(result, folder / "report.html", pictures=chosen)
+    report(result, folder / "report.html", pictures=chosen, tables=tables, reliability=also.reliability)
     message = "; ".join(dict.fromkeys(one.message for one in parts.values()))
-    return message, {**extra, "tables": texts, "wanted": [*want_of(wants)], "success": result.success}
+    judged = {name: judgement(one) for name, one in parts.items()}
+    wanted = [*want_of(wants)]
+    return message, {**extra, "tables": texts, "wanted": wanted, "success": result.success, "verdict": judged}
 
 
 def _pdf(folder: Path, say: Say, *, page: str) -> tuple[str, dict[str, Any]]:

@@ -30,6 +30,9 @@ LONGEST_NAME = 200
 theirs.
 """
 
+LONGEST_PART, LONGEST_PATH = 255, 4000
+"""Most bytes of a name and of a whole path that systems take."""
+
 RESERVED = (".checkpoint", ".checkpoint.previous", ".new")
 """Endings of files that a run makes beside its result."""
 
@@ -46,6 +49,9 @@ def file_path(value: object, field: str) -> Path:
     if not _is_encodable(text):
         raise InputError.of(field, value, "must name a file; it holds characters that no file name can have")
     path = Path(text)
+    if any(len(os.fsencode(part)) > LONGEST_PART for part in path.parts) or len(os.fsencode(text)) > LONGEST_PATH:
+        brief = text if len(text) <= 60 else f"{text[:30]}...{text[-27:]}"
+        raise FileError(f"{brief}: the file name is too long: at most {LONGEST_NAME} bytes")
     if path.name in ("", "..") or text.endswith(os.sep):
         raise InputError.of(field, value, "must name a file, not a folder")
     return path
@@ -130,10 +136,12 @@ def draft_of(path: Path, run_id: str) -> Path:
     return path.with_name(f".{path.name}.{run_id[:12]}.new")
 
 
-def create(path: Path) -> BinaryIO:
-    """A new file, open for reading and writing; nothing that has its name already is opened or followed (EEXIST)."""
+def create(path: Path, mode: int = 0o666) -> BinaryIO:
+    """A new file, open for reading and writing; nothing that has its name already is opened or followed (EEXIST). `mode` says who
+    may do what with it, less what the user's mask takes away.
+    """
     new = os.O_RDWR | os.O_CREAT | os.O_EXCL | flags("O_NOFOLLOW", "O_CLOEXEC")
-    return os.fdopen(os.open(path, new, 0o666), "r+b")
+    return os.fdopen(os.open(path, new, mode), "r+b")
 
 
 def create_draft(path: Path, run_id: str) -> tuple[Path, LockedFile]:

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.base.own_files import write_whole
+from trbdyn.base.reading import checked_file, unpacked_limit
 from trbdyn.cage.cage_solid import CageSolid
 from trbdyn.cage.drawn_solid import solid_of_cage
 from trbdyn.errors import FileError, InputError
@@ -211,6 +212,7 @@ class CageModes:
         """
         import h5py
 
+        size = checked_file(path, "HDF5").stat().st_size
         try:
             with h5py.File(path, "r") as file:
                 if file.attrs.get("format") != FORMAT:
@@ -219,6 +221,8 @@ class CageModes:
                     raise FileError(f"{path}: has version {file.attrs.get('version')} of the format; {VERSION} is read")
                 if missing := [name for name in UNITS if name not in file and name not in OPTIONAL]:
                     raise FileError(f"{path}: lacks {', '.join(missing)}")
+                if large := [name for name in UNITS if name in file and file[name].nbytes > unpacked_limit(size)]:
+                    raise FileError(f"{path}: {large[0]} would take {file[large[0]].nbytes / 1e6:.0f} MB in memory")
                 numbers = {name: file[name][()] for name in UNITS if not name.endswith("_name") and name in file}
                 texts = {name: tuple(file[name].asstr()[()]) for name in UNITS if name.endswith("_name")}
                 source = str(file.attrs.get("source", ""))

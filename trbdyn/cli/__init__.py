@@ -15,6 +15,7 @@ from typing import Final
 
 from trbdyn.base.version import __version__
 from trbdyn.cli import (
+    answers,
     app,
     cases,
     check,
@@ -48,6 +49,10 @@ COMMANDS: Final = (
     ensemble.ensemble,
     plan.plan,
     rating.rating,
+    answers.fit,
+    answers.spectrum,
+    answers.stiffness,
+    answers.export,
     torque.torque,
     thermal.thermal,
     fmu.fmu,

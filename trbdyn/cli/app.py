@@ -17,7 +17,7 @@ from trbdyn.cli.outcome import DONE
 )
 def app(options: Options) -> int:
     """Serve a page for the browser of this machine: choose a bearing, run it, see results, without programming. Nothing
-    leaves this machine. Needs the extra: pip install 'trbdyn[app]'.
+    leaves this machine. Needs the extra: pip install 'trbdyn[app]', or '.[app]' in a folder with the sources.
     """
     from trbdyn.app import need_nicegui
     from trbdyn.base.own_files import folder_path

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from trbdyn.base.own_files import file_path
+from trbdyn.base.reading import read_input_text
 from trbdyn.base.shipped import DATA
 from trbdyn.base.shown import Shown, Tabled
 from trbdyn.errors import FileError, InputError
@@ -39,6 +40,8 @@ PAGES: Final = ("NACHI",)
 """Sources that state e; with others it is recalled, or left open."""
 RECALLED: Final = 0.03
 """Band of an e that was recalled (1): what makers' catalogues differ by."""
+MOST_ROWS: Final = 20_000
+"""Most lines of a table."""
 USUAL_E: Final = (0.36, 0.27, 0.55)
 """e where none is known, and its band (1): median of the table's inch series, and what holds all but steep ones."""
 USUAL_RATING: Final = (113.0, 0.65, 1.4)
@@ -264,10 +267,9 @@ def _angle(e: float) -> float:
 
 @cache
 def _rows(file: Path) -> Mapping[str, Designation]:
-    try:
-        lines = file.read_text(encoding="utf-8").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise FileError(f"{file}: {error}") from None
+    lines = read_input_text(file, "CSV", field="table").splitlines()
+    if len(lines) > MOST_ROWS:
+        raise FileError(f"{file}: has {len(lines)} lines; {MOST_ROWS} are read")
     reader = csv.DictReader(line for line in lines if not line.startswith("#"))
     columns = COLUMNS_OF_CYLINDERS if "F" in (reader.fieldnames or ()) else COLUMNS
     missing = [name for name in columns if name not in (reader.fieldnames or ())]

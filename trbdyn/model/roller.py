@@ -9,12 +9,16 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from trbdyn.base.reading import read_input_text
 from trbdyn.base.validation import Model, Number, Whole, unit
 from trbdyn.errors import InputError
 from trbdyn.model.assumed import ISO_SHORT, RIG
 from trbdyn.model.core_table import parameter
 from trbdyn.model.material import Material
 from trbdyn.model.trace import read_trace
+
+MOST_ROWS, MOST_COLUMNS = 10_000, 50
+"""Most lines and columns of a table of a profile."""
 
 
 class Profile(Model):
@@ -118,9 +122,14 @@ class Profile(Model):
         InputError
             If the file cannot be read or lacks a column.
         """
+        text = read_input_text(path, "CSV")
+        lines = text.splitlines()
+        if lines and (lines[0].count(",") > MOST_COLUMNS or len(lines) > MOST_ROWS):
+            limit = f"must be a CSV file of at most {MOST_COLUMNS} columns and {MOST_ROWS} lines"
+            raise InputError.of("path", str(path), limit)
         try:
-            found = np.atleast_1d(np.genfromtxt(path, delimiter=",", names=True, dtype=float))
-        except (OSError, ValueError) as error:
+            found = np.atleast_1d(np.genfromtxt(lines, delimiter=",", names=True, dtype=float))
+        except ValueError as error:
             raise InputError.of("path", str(path), f"must be a CSV file of numbers: {error}") from None
         columns = []
         for names in ({"station_mm": 1e-3, "station_m": 1.0}, {"drop_um": 1e-6, "drop_m": 1.0}):

@@ -11,6 +11,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from trbdyn.base.reading import MOST_POINTS
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.base.validation import number_of
 from trbdyn.errors import FileError, InputError
@@ -39,6 +40,10 @@ SMALLEST: Final = 10e-9
 """Heights that no instrument tells apart on a rough surface (m)."""
 CELLS: Final = 400
 """Cells along the effective length, whose medians have the robust line."""
+
+
+MOST_WITHIN: Final = 5000
+"""Most points within the cut-off: the filter's time grows with them."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -311,6 +316,11 @@ def _check_points(x: Array, z: Array, cutoff: float, path: object) -> None:
         raise FileError(
             f"{path}: has a point every {1e3 * typical:.3g} mm: at most a quarter of the cut-off, {250.0 * cutoff:.3g} mm, "
             "must be between them; a longer cutoff takes fewer points"
+        )
+    if (x[-1] - x[0]) / typical > MOST_POINTS or cutoff / typical > MOST_WITHIN:
+        raise FileError(
+            f"{path}: most points lie {1e9 * typical:.3g} nm apart, so that the filter would need "
+            f"{(x[-1] - x[0]) / typical:.3g} points, or {cutoff / typical:.3g} within its cut-off; thin the trace to even steps"
         )
     if (widest := float(steps.max())) > cutoff:
         place = 1e3 * x[int(np.argmax(steps))]

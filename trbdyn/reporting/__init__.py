@@ -18,7 +18,7 @@ from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.result import Result
 from trbdyn.results.sources import files_of
 
-__all__ = ["report", "save_pdf"]
+__all__ = ["judgement", "report", "save_pdf"]
 
 HTML: Final = (".html", ".htm")
 PDF: Final = (".pdf",)
@@ -35,13 +35,15 @@ def report(
     pictures: Sequence[str] | None = None,
     tables: Sequence[Displayed] = (),
     check_budget_s: float | None = None,
+    reliability: float = 90.0,
     pdf: bool = False,
     overwrite: bool = False,
 ) -> Path:
     """Write a report of a run as one HTML file that needs nothing else.
 
-    It says what was simulated (drawing, inputs with the assumed and estimated ones marked), gives a verdict in
-    sentences, pictures, and every number with its unit and what it means.
+    It begins with a sheet to sign: inputs, given, estimated and assumed, verdicts and margins, file, date and version. Then it
+    says what was simulated (drawing, inputs with the assumed and estimated ones marked), gives a verdict in sentences, pictures,
+    and every number with its unit and what it means.
 
     Parameters
     ----------
@@ -63,6 +65,8 @@ def report(
     check_budget_s : float, optional
         Processor time for the check of each run (`trbdyn.check`), which says what tolerances do to its numbers (s); by default
         2 s or a tenth of that of the run. 0: no check.
+    reliability : float
+        Of the rating lives: 90, 95, 96, 97, 98 or 99 (%).
     pdf : bool
         Also write a PDF beside it; needs Chromium.
     overwrite : bool
@@ -118,11 +122,20 @@ def report(
         raise InputError.of("other", ", ".join(bearings[-1]) or "one bearing", limit)
     checked = check_budget_s != 0.0 and all(one.time.size > 1 for one in results)
     checks = [check(one, budget_s=check_budget_s) for one in results] if checked else ()
-    text = page(results, list(names[: len(results)]), title, pictures, shown, checks)
+    text = page(results, list(names[: len(results)]), title, pictures, shown, checks, reliability)
     written = write_whole(path, text, endings=HTML, **how)
     if pdf:
         save_pdf(written, written.with_suffix(".pdf"), overwrite=overwrite)
     return written
+
+
+def judgement(result: Result) -> list[tuple[str, str, str]]:
+    """What a run says of life, cage, hits, torque, films and pressures: grade ('good', 'care', 'bad' or 'plain'), headline,
+    sentence.
+    """
+    from trbdyn.reporting.page import judgement
+
+    return judgement(result)
 
 
 def converter() -> str | None:

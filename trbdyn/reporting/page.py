@@ -13,6 +13,7 @@ from trbdyn.base.shown import Shown
 from trbdyn.plot.assembly import of_result
 from trbdyn.reporting import tables
 from trbdyn.reporting.captions import CAPTIONS
+from trbdyn.reporting.front import front
 from trbdyn.reporting.inputs import Row, rows
 from trbdyn.reporting.ratings import frequencies_section, ratings_section, sheet_of, system_section
 from trbdyn.reporting.tables import number_text, safe
@@ -43,6 +44,7 @@ def page(
     pictures: Sequence[str] | None,
     shown: Sequence[Shown] = (),
     checks: Sequence[Check] = (),
+    reliability: float = 90.0,
 ) -> str:
     """The HTML of the report of one run or of two, of one bearing or of several on a shaft, with further tables below.
 
@@ -53,22 +55,24 @@ def page(
     if bearings == [""]:
         of_one = [result.parts[0] for result in results]
         heading = title or f"Report: {' and '.join(dict.fromkeys(run.scene.bearing.name for run in of_one))}"
-        return _whole(heading, _body(of_one, names, heading, pictures, "", checks) + tables.further(shown))
+        body = _body(of_one, names, heading, pictures, "", checks, reliability, signed=True)
+        return _whole(heading, body + tables.further(shown))
     heading = title or f"Report: {', '.join(bearings)} on one shaft"
     parts = [f"<h1>{safe(heading)}</h1>"]
+    if len(results) == 1:
+        parts.append(_sheet(list(results[0].by_name.values()), bearings, reliability))
     for result, name in zip(results, names, strict=True):
-        parts.append(_shaft(result, name if len(results) > 1 else "", pictures))
+        parts.append(_shaft(result, name if len(results) > 1 else "", pictures, reliability))
     own = of_result(results[0])
     of_bearings = None if pictures is None else [name for name in pictures if name not in own]
     for bearing in bearings:
         of_one = [result.by_name[bearing] for result in results]
-        parts.append(
-            _body(of_one, names if len(results) > 1 else [bearing], f"Bearing {bearing}", of_bearings, bearing, checks)
-        )
+        called = names if len(results) > 1 else [bearing]
+        parts.append(_body(of_one, called, f"Bearing {bearing}", of_bearings, bearing, checks, reliability))
     return _whole(heading, "\n".join(parts) + tables.further(shown))
 
 
-def _shaft(result: Any, name: str, pictures: Sequence[str] | None) -> str:
+def _shaft(result: Any, name: str, pictures: Sequence[str] | None, reliability: float) -> str:
     """What the bearings of a shaft share: verdict, the bearings side by side, lives, pictures of the shaft."""
     own, shown = of_result(result), result._shown()
     of = f" of {safe(name)}" if name else ""
@@ -82,7 +86,7 @@ def _shaft(result: Any, name: str, pictures: Sequence[str] | None) -> str:
             f"<p class='sub'>{safe(result.assembly.title if result.assembly else '')}</p>",
             f"<h2>Verdict of the shaft{of}</h2><div class='cards'>{cards}</div>",
             f"<h2>The bearings side by side{of}</h2>{table}<ul class='warnings'>{notes}</ul>",
-            system_section(result),
+            system_section(result, reliability),
             f"<h2>The shaft{of}</h2><div class='pictures'>{figures}</div>",
         ]
     )
@@ -93,6 +97,19 @@ def _card(sentence: Sentence) -> str:
     return f"<div class='card {grade}'><span class='grade'>{GRADES[grade]}</span><b>{safe(head)}</b>{safe(text)}</div>"
 
 
+def judgement(result: Result) -> list[Sentence]:
+    """What a run says of life, cage, hits, torque, films and pressures: grade, headline, sentence."""
+    return verdict(result, _with_lives(result.summary(), sheet_of(result)))
+
+
+def _sheet(results: Sequence[Result], names: Sequence[str], reliability: float) -> str:
+    """The first page, to be signed."""
+    sheets = [sheet_of(result, reliability) for result in results]
+    numbers = [_with_lives(result.summary(), sheet) for result, sheet in zip(results, sheets, strict=True)]
+    judged = [verdict(result, values) for result, values in zip(results, numbers, strict=True)]
+    return front(results, names, [rows(result.scene) for result in results], numbers, sheets, judged)
+
+
 def _body(
     results: Sequence[Result],
     names: Sequence[str],
@@ -100,10 +117,13 @@ def _body(
     pictures: Sequence[str] | None,
     bearing: str,
     checks: Sequence[Check],
+    reliability: float,
+    *,
+    signed: bool = False,
 ) -> str:
     """One bearing of each run; `bearing` is its name on a shaft."""
     numbers = [result.summary() for result in results]
-    sheets = [sheet_of(result) for result in results]
+    sheets = [sheet_of(result, reliability) for result in results]
     inputs = [rows(result.scene) for result in results]
     judged = [
         _verdict(result, _with_lives(values, sheet), listed, name if len(results) > 1 else "", check)
@@ -112,6 +132,8 @@ def _body(
         )
     ]
     parts = [_head(results, names, title)]
+    if signed and len(results) == 1:
+        parts.append(_sheet(results, names, reliability))
     if len(results) > 1:
         parts += [
             tables.comparison(numbers, names),

@@ -15,10 +15,12 @@ from trbdyn.standards.frequencies import frequencies
 from trbdyn.standards.sheet import WHICH_LIFE, Rating
 
 
-def sheet_of(result: Result) -> Rating | str:
-    """The sheet of a run: that of its summary where speed and loads are constant, else that of its records; or the reason."""
+def sheet_of(result: Result, reliability: float = 90.0) -> Rating | str:
+    """The sheet of a run: that of its summary where speed and loads are constant, else that of its records; or the reason. The
+    summary has lives of a reliability of 90 %.
+    """
     try:
-        return steady_sheet(result) or rating(result)
+        return (steady_sheet(result) if reliability == 90.0 else None) or rating(result, reliability=reliability)
     except TrbError as error:
         return str(error).splitlines()[0]
 
@@ -39,10 +41,10 @@ def ratings_section(sheets: Sequence[Rating | str], names: Sequence[str]) -> str
     return f"<details><summary>Ratings and lives</summary>{''.join(parts)}<p>{safe(WHICH_LIFE)}</p></details>"
 
 
-def system_section(result: AssemblyResult) -> str:
+def system_section(result: AssemblyResult, reliability: float = 90.0) -> str:
     """Lives of each bearing of a shaft and of the whole."""
     try:
-        shown = rating(result)._shown()
+        shown = rating(result, reliability=reliability)._shown()
     except TrbError as error:
         return f"<h2>Lives</h2><p>No ratings: {safe(str(error).splitlines()[0])}.</p>"
     notes = "".join(f"<li>{safe(text)}</li>" for text in shown.notes)

@@ -11,6 +11,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
+from trbdyn.base.display import plain, step_of
 from trbdyn.base.shown import Shown
 from trbdyn.reporting.inputs import Row
 from trbdyn.results.number import Number
@@ -123,7 +124,7 @@ def difference(first: Any, second: Any, first_width: float | None, second_width:
         return "same"
     if first == 0.0 or first * second < 0.0 or abs(second) > 10.0 * abs(first):
         return f"{second - first:+.3g}".replace("-", MINUS)
-    return f"{100.0 * (second / first - 1.0):+.3g} %".replace("-", MINUS)
+    return f"{'+' if second > first else ''}{plain(100.0 * (second / first - 1.0), 3)} %".replace("-", MINUS)
 
 
 def key_numbers(summaries: Sequence[Mapping[str, Any]], names: Sequence[str]) -> str:
@@ -208,7 +209,7 @@ def _number(
     factor, unit = _scale(unit, values)
     shown = [
         _amount(value * factor if isinstance(value, float) and factor != 1.0 else value)
-        + ("" if w is None else f" ± {w * factor:.2g}")
+        + ("" if w is None else f" ± {plain(w * factor, 2)}")
         for value, w in zip(values, widths, strict=True)
     ]
     if unit == "h":
@@ -222,13 +223,6 @@ def _number(
     return f"<tr{differs}><td class='q'>{safe(words.strip())}</td>{cells}<td class='u'>{safe(unit)}</td>{meant}</tr>"
 
 
-SCALES: Final[Mapping[str, tuple[tuple[float, float, str], ...]]] = {
-    "Pa": ((1e9, 1e-9, "GPa"), (0.0, 1e-6, "MPa")),
-    "m": ((1e-3, 1e3, "mm"), (0.0, 1e6, "µm")),
-}
-"""Units of a report for those of the summary: from which size on, by what factor, and the unit."""
-
-
 def number_text(row: Number, value: Any) -> str:
     """A number with its unit as the tables of a report show it."""
     factor, unit = _scale(row.unit, [value])
@@ -238,8 +232,7 @@ def number_text(row: Number, value: Any) -> str:
 
 def _scale(unit: str, values: Sequence[Any]) -> tuple[float, str]:
     """Factor and unit in which a row of numbers is shown."""
-    largest = max((abs(value) for value in values if isinstance(value, float)), default=0.0)
-    return next(((factor, name) for least, factor, name in SCALES.get(unit, ()) if largest >= least), (1.0, unit))
+    return step_of(unit, [value for value in values if isinstance(value, float)])
 
 
 def _kind(text: str) -> str:
@@ -252,7 +245,7 @@ def _amount(value: Any) -> str:
         return "-"
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
+    return plain(value) if isinstance(value, float) else str(value)
 
 
 def inputs(listed_inputs: Sequence[list[Row]], names: Sequence[str]) -> str:

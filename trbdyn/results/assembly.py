@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, Self, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from trbdyn.base.display import plain, step_of
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
@@ -28,7 +29,6 @@ Array = NDArray[np.float64]
 
 TOGETHER: Final = "together"
 """Column of what is that of all bearings."""
-SCALES: Final = {"Pa": (1e-6, "MPa")}
 """Factors of units in the table of an assembly, and the units there."""
 
 
@@ -85,10 +85,10 @@ class AssemblyResult(Mapping[str, Result], Displayed):
         for row in numbers.rows("shaft"):
             values = [one.get(row.name) for one in found.values()]
             if any(value is not None for value in values):
-                factor, unit = SCALES.get(row.unit, (1.0, row.unit))
-                words = f"{row.words}, {unit}" if unit else row.words
                 values.append(all_of_them.get(row.name))
-                rows.append((words, *("-" if value is None else f"{factor * value:.5g}" for value in values)))
+                factor, unit = step_of(row.unit, [value for value in values if isinstance(value, float)])
+                words = f"{row.words}, {unit}" if unit else row.words
+                rows.append((words, *("-" if value is None else plain(factor * value, 5) for value in values)))
         shaft = 1e6 * self.shaft_position
         mean = shaft.mean(axis=0)
         notes = (

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from trbdyn.base.locks import is_locked
 from trbdyn.base.own_files import file_path
+from trbdyn.base.reading import checked_file, unpacked_limit
 from trbdyn.errors import FileError
 from trbdyn.results import peaks as peak_table
 from trbdyn.results.fields import Field
@@ -37,6 +38,8 @@ from trbdyn.results.sources import Source
 
 Array = NDArray[np.float64]
 
+SMALL: Final = 16 << 20
+"""Bytes of a dataset up to which nothing is asked."""
 MOST_TEXT: Final = 64 << 20
 """Most bytes of what a result holds besides its records: texts, last state, peaks."""
 _READ_ERRORS = (
@@ -69,8 +72,7 @@ def open_to_read(path: Path) -> h5py.File:
 @contextmanager
 def opened(path: Path, bearing: str = "") -> Iterator[h5py.Group]:
     """A result file, or a bearing's part of one, open to be read; what goes wrong inside is a FileError that names it."""
-    if not path.is_file():
-        raise FileError(f"{path}: there is no such file")
+    checked_file(path, "HDF5")
     with _said(path), open_to_read(path) as file:
         yield part_of(file, bearing)
 
@@ -365,6 +367,7 @@ def read_own(group: h5py.Group, name: str, count: int | None = None, *, most: in
             f"{where}: the file is damaged: {wanted} values of {name!r} shall be there, but it holds {held}"
         )
     size = max(math.prod(dataset.shape[1:]) * wanted, math.prod(shape or ())) * dataset.dtype.itemsize
-    if most is not None and size > most:
+    packed = os.stat(where).st_size if size > SMALL else 0
+    if size > (most or size) or (size > SMALL and size > unpacked_limit(packed)):
         raise FileError(f"{where}: {name!r} would take {size / 1e6:.0f} MB in memory, more than a result holds there")
     return np.asarray(dataset[:wanted])

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from trbdyn.base.display import displayed
 from trbdyn.base.own_files import write_whole
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.errors import unknown_name
@@ -138,11 +139,13 @@ def shown(values: Mapping[str, Any]) -> Shown:
         elif isinstance(value, Mapping):
             lines.append((words, "", "", row.name))
             lines.extend(
-                (f"    {part.replace('_', ' ')}", _number(entry), row.unit) for part, entry in value.items() if entry
+                (f"    {part.replace('_', ' ')}", *_number(entry, None, row.unit))
+                for part, entry in value.items()
+                if entry
             )
         else:
-            number = _number(value, (values.get("confidence") or {}).get(row.name))
-            lines.append((words, life_text(value) if row.unit == "h" else number, row.unit, row.name))
+            number, unit = _number(value, (values.get("confidence") or {}).get(row.name), row.unit)
+            lines.append((words, life_text(value) if row.unit == "h" else number, unit, row.name))
     return Shown(rows=tuple(lines), head=("quantity", "value", "unit", "name"), notes=tuple(below))
 
 
@@ -151,8 +154,12 @@ def _settled_words(values: Mapping[str, Any]) -> str:
     return {"settled": "yes", "drifting": "no, it drifts: "}.get(values["settling"], "cannot be told: ") + reason
 
 
-def _number(value: Any, half_width: float | None = None) -> str:
+def _number(value: Any, half_width: float | None, unit: str) -> tuple[str, str]:
+    """A number with its interval, and the unit in which it is shown."""
     if isinstance(value, bool):
-        return "yes" if value else "no"
-    number = f"{value:.5g}" if isinstance(value, float) else str(value)
-    return number if half_width is None else f"{number} ± {half_width:.2g}"
+        return "yes" if value else "no", unit
+    if not isinstance(value, float):
+        return str(value), unit
+    number, shown_unit = displayed(value, unit, 5)
+    width = "" if half_width is None else f" ± {displayed(half_width, unit, 2, like=value)[0]}"
+    return number + width, shown_unit

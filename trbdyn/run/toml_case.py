@@ -19,16 +19,15 @@ A quantity that changes in time is a table of ``times`` (s) and ``values``.
 from __future__ import annotations
 
 import inspect
-import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
-from trbdyn.base.own_files import read_text
+from trbdyn.base.reading import read_input_text, tables_of
 from trbdyn.base.shipped import CASES
 from trbdyn.base.validation import Model
-from trbdyn.errors import MISSING, FileError, InputError, Problem, unknown_name
+from trbdyn.errors import MISSING, MOST_TOLD, FileError, InputError, Problem, unknown_name
 from trbdyn.errors import Path as FieldPath
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.cage import Cage
@@ -47,8 +46,6 @@ C = TypeVar("C")
 M = TypeVar("M", bound=Model)
 
 TABLES: Final = ("bearing", "lubricant", "effects", "scene", "start", "run")
-DEEPEST: Final = 40
-"""Most levels of tables and lists in a file; a case has eight."""
 _OWN_TABLES: Final = ("bearing", "lubricant", "effects", "start")
 
 _TRACE: Final = tuple(inspect.signature(read_trace).parameters)[2:]
@@ -80,28 +77,11 @@ def read_tables(file: Path, hint: str = "") -> Table:
     FileError
         If it cannot be read or is no TOML; where it cannot be opened, `hint` is added to the message.
     """
+    text = read_input_text(file, "TOML", hint=hint)
     try:
-        tables = tomllib.loads(read_text(file))
-        if _depth(tables) > DEEPEST:
-            raise RecursionError
-        return tables
-    except OSError as error:
-        raise FileError(f"{file}: {error.strerror or error}{hint}") from None
-    except RecursionError:
-        raise FileError(f"{file}: not a TOML file that can be used: its tables are nested too deeply") from None
+        return tables_of(text)
     except ValueError as error:
-        raise FileError(f"{file}: not a TOML file: {error}") from None
-
-
-def _depth(tables: Table) -> int:
-    """How deep tables and lists are nested."""
-    level: list[Any] = [tables]
-    depth = 0
-    while level:
-        depth += 1
-        inside = [entry for place in level for entry in (place.values() if isinstance(place, dict) else place)]
-        level = [entry for entry in inside if isinstance(entry, dict | list)]
-    return depth
+        raise FileError(f"{file}: not a TOML file that can be used: {error}") from None
 
 
 def case_from_dict(values: Mapping[str, Any]) -> tuple[Scene, RunOptions]:
@@ -282,11 +262,10 @@ def table_of(values: Mapping[str, Any], name: str) -> Table:
 
 def check_names(table: Mapping[str, Any], allowed: Iterable[str], path: FieldPath) -> None:
     names = set(allowed)
-    problems = [
-        Problem((*path, key), value, unknown_name(key, names)) for key, value in table.items() if key not in names
-    ]
-    if problems:
-        raise InputError(problems)
+    unknown = [(key, value) for key, value in table.items() if key not in names]
+    if unknown:
+        told = unknown[:MOST_TOLD]
+        raise InputError([Problem((*path, key), value, unknown_name(key, names)) for key, value in told])
 
 
 def _choose(table: Mapping[str, Any], key: str, choices: Mapping[str, C], path: FieldPath) -> C:

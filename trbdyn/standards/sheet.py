@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from trbdyn.base.display import displayed, plain
 from trbdyn.base.shown import Shown, Tabled
 from trbdyn.errors import InputError
 from trbdyn.model.ratings import rating_iso76, rating_iso281
@@ -65,7 +66,14 @@ class RatingRow:
         """The value as text, four digits; a life beyond a million hours as such."""
         if self.unit == "h":
             return life_text(self.value)
-        return _digits(self.value) if self.value is None or self.value <= self.longest else f">{self.longest:.4g}"
+        if self.value is None or self.value <= self.longest:
+            return "-" if self.value is None else displayed(self.value, self.unit)[0]
+        return f">{plain(self.longest)}"
+
+    @property
+    def shown_unit(self) -> str:
+        """The unit of `shown`: kN of 286000 N."""
+        return self.unit if self.value is None else displayed(self.value, self.unit)[1]
 
 
 RATED_AS_RADIAL: Final = 1e-3
@@ -188,7 +196,7 @@ class Rating(Fitted):
         listed = [row for row in self.rows if row.value is not None or row.note]
         return Shown(
             title="ratings and lives",
-            rows=tuple((f"{row.words} {row.symbol}", row.shown, row.unit, row.note) for row in listed),
+            rows=tuple((f"{row.words} {row.symbol}", row.shown, row.shown_unit, row.note) for row in listed),
             head=("name", "value", "unit", "where it comes from"),
             notes=(*self.warnings, WHICH_LIFE),
             parts=self.fit_tables,
@@ -222,7 +230,7 @@ def life_text(hours: float | None) -> str:
 
 
 def _digits(value: float | None) -> str:
-    return "-" if value is None else f"{value:.4g}"
+    return "-" if value is None else plain(value)
 
 
 def sheet(scene: Scene, loading: Loading, **options: Any) -> Rating:

@@ -14,6 +14,7 @@ import scipy
 from numpy.typing import NDArray
 
 from trbdyn import _core
+from trbdyn.base.display import plain
 from trbdyn.base.expected import expect
 from trbdyn.base.shown import Shown, Tabled
 from trbdyn.errors import InputError, LoadError, RunWarning
@@ -77,6 +78,8 @@ class Stiffness(Tabled):
         Whose stiffness it is, at the time `time` (s).
     """
 
+    _headed = True
+
     matrix: Array
     displacement: Array
     load: Array
@@ -119,11 +122,13 @@ class Stiffness(Tabled):
 
     def _shown(self) -> Shown:
         names = ("force_x", "force_y", "force_z", "moment_x", "moment_y")
-        rows = tuple((name, *(f"{value:.5g}" for value in row)) for name, row in zip(names, self.matrix, strict=True))
+        shown = self.matrix * [1e-6, 1e-6, 1e-6, 1e-3, 1e-3]
+        rows = tuple((name, *(plain(value, 5) for value in row)) for name, row in zip(names, shown, strict=True))
+        heads = tuple(f"{name} ({'per µm' if k < 3 else 'per mrad'})" for k, name in enumerate(COORDINATES))
         return Shown(
             f"Stiffness of the inner ring at {self.speed_rpm:g} rpm",
             rows,
-            head=("per m and rad", *COORDINATES),
+            head=("force (N), moment (N m)", *heads),
             notes=(
                 "Forces in N, moments in N m, about the roller-centre plane; rollers stay in equilibrium, without friction.",
                 *self._profile(),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
@@ -10,6 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from trbdyn.base.own_files import file_path
+from trbdyn.base.reading import read_input_text
 from trbdyn.base.validation import as_number, whole_number_of
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.assembly import Subject
@@ -17,6 +19,8 @@ from trbdyn.model.spectrum import LoadCase, Spectrum
 from trbdyn.study.definition import Base
 
 OWN_COLUMNS: Final = ("name", "share")
+MOST_CASES: Final = 1000
+MOST_COLUMNS: Final = 100
 
 
 def spectrum(
@@ -29,8 +33,9 @@ def spectrum(
     base : Scene, Assembly, mapping or path-like
         What the cases change: a subject, the tables of a case, or the name of one.
     table : path-like or sequence of mapping
-        A CSV file, or its rows. Columns: ``share``, the time of the case in hours, percent or any other unit; ``name``; every
-        other one is the path of a value as in a study, ``loads[0].force[1]``, where ``scene.`` or ``assembly.`` may be left out:
+        A CSV file, or its rows. Semicolons or tabs between its cells are taken, too; numbers may then have decimal commas.
+        Columns: ``share``, the time of the case in hours, percent or any other unit; ``name``; every other one is the path
+        of a value as in a study, ``loads[0].force[1]``, where ``scene.`` or ``assembly.`` may be left out:
         ``speed_rpm``, ``axial_load``. An empty cell leaves the value of the base. Lines that begin with # are left out.
 
     Returns
@@ -57,7 +62,11 @@ def spectrum(
     >>> found.worst, round(found.life_hours, -2)
     ('full', 15200.0)
     """
-    rows = _lines(file_path(table, "table")) if isinstance(table, str | Path) else [dict(row) for row in table]
+    if isinstance(table, str | Path):
+        file = file_path(table, "table")
+        rows: list[dict[str, Any]] = [*table_rows(read_input_text(file, "CSV"), str(file))]
+    else:
+        rows = [dict(row) for row in table]
     made = Base.of(base)
     main = next((name for name in ("assembly", "scene") if name in made.tables), "scene")
     cases = []
@@ -136,16 +145,39 @@ def series_table(
     ]
 
 
-def _lines(file: Path) -> list[dict[str, str]]:
+def table_rows(text: str, name: str) -> list[dict[str, str]]:
+    """Rows of a table with a head: cells lie between commas, semicolons or tabs. Where they lie between semicolons or tabs, a
+    comma in a number is its decimal point.
+
+    Raises
+    ------
+    FileError
+        If a line cannot be read, or there are more cases than are taken.
+    InputError
+        If a row has not a cell for each column.
+    """
+    lines = [line for line in text.lstrip("\ufeff").splitlines() if line.strip() and not line.startswith("#")]
+    mark = next((one for one in (";", "\t") if lines and one in lines[0]), ",")
+    if len(lines) > MOST_CASES + 1:
+        raise FileError(f"{name}: has {len(lines) - 1} load cases; {MOST_CASES} are taken")
+    if lines and lines[0].count(mark) >= MOST_COLUMNS:
+        raise FileError(f"{name}: has more than {MOST_COLUMNS} columns")
     try:
-        lines = file.read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise FileError(f"{file}: {error}") from None
-    rows = list(csv.DictReader(line for line in lines if line.strip() and not line.startswith("#")))
+        rows = list(csv.DictReader(lines, delimiter=mark))
+    except csv.Error as error:
+        raise FileError(f"{name}: is no table: {error}") from None
+    found = []
     for index, row in enumerate(rows):
         if None in row or None in row.values():
             raise InputError.of(("cases", index), len(row), "must have a cell for each column")
-    return [{key.strip(): cell.strip() for key, cell in row.items()} for row in rows]
+        cells = {key.strip(): cell.strip() for key, cell in row.items()}
+        found.append({key: _point(cell) if mark != "," else cell for key, cell in cells.items()})
+    return found
+
+
+def _point(cell: str) -> str:
+    """A number with a point in place of its comma; any other text as it is."""
+    return cell.replace(",", ".") if re.fullmatch(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?", cell) else cell
 
 
 def _value(key: str, cell: Any) -> Any:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.base.own_files import file_path
+from trbdyn.base.reading import MOST_TRIANGLES, checked_file, read_input
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.drawn.stl import doubled, faces_of, read_triangles, solid_of
 
@@ -28,8 +29,10 @@ SIX_NODES: Final = 9
 """Gmsh's number of a triangle with nodes at its corners and the middles of its edges."""
 CLOSED: Final = 1e-6
 """Integral of the normal over a closed surface, over its area, at most."""
-LARGEST: Final = 1 << 28
-"""Largest drawing (bytes)."""
+MOST_FACES: Final = 20_000
+"""Most faces of a drawing."""
+DEEPEST_STEP: Final = 20
+"""Most brackets within brackets in a STEP file."""
 _LOCK = threading.RLock()
 """Gmsh has one state for the whole process."""
 
@@ -163,27 +166,40 @@ def opened(path: str | os.PathLike[str], *, mesh_size: float, unit: str = "mm") 
     """A drawing of one solid, as long as the context lasts: a STEP file, or an STL file, which does not tell its unit. Triangles
     of `mesh_size` (m) cover its faces roughly.
     """
-    file = file_path(path, "drawing")
-    ending = Path(file).suffix.lower()
+    ending = file_path(path, "drawing").suffix.lower()
     if ending not in (*STEP_ENDINGS, ".stl"):
         raise InputError.of("drawing", str(path), f"must be a file {', '.join(STEP_ENDINGS)} or .stl")
     if unit not in UNITS:
         raise InputError.of("unit", unit, f"must be one of {', '.join(UNITS)}")
-    try:
-        size = Path(file).stat().st_size
-        with Path(file).open("rb") as stream:
-            head = stream.read(512)
-    except OSError as error:
-        raise FileError(f"{file}: {error.strerror or error}") from None
-    if size > LARGEST:
-        raise FileError(f"{file}: has {size / 1e6:.0f} MB; drawings up to {LARGEST / 1e6:.0f} MB are read")
     if ending == ".stl":
-        yield _stl(Path(file), UNITS[unit])
+        yield _stl(checked_file(path, "STL", field="drawing"), UNITS[unit])
         return
-    if b"ISO-10303-21" not in head:
-        raise FileError(f"{file}: is no STEP file: it does not begin with ISO-10303-21")
+    file = checked_file(path, "STEP", field="drawing")
+    _check_step(file)
     with gmsh_model() as gmsh:
         yield _step(gmsh, str(file), mesh_size)
+
+
+def _check_step(file: Path) -> None:
+    """Refuse what is no STEP file, and one whose brackets are nested so deeply that reading it needs a stack without end."""
+    data = read_input(file, "STEP")
+    if b"ISO-10303-21" not in data[:512]:
+        raise FileError(f"{file}: is no STEP file: it does not begin with ISO-10303-21")
+    marks = np.frombuffer(data, dtype=np.uint8)
+    level = np.cumsum((marks == ord("(")).astype(np.int32) - (marks == ord(")")))
+    if level.size and level.max() > DEEPEST_STEP:
+        raise FileError(f"{file}: is no STEP file that can be used: brackets are nested {level.max()} deep")
+
+
+def _check_size(gmsh: Any, path: str, mesh_size: float) -> None:
+    """Refuse a solid that so many triangles cover that they do not fit into memory."""
+    faces = gmsh.model.getEntities(2)
+    area = MM**2 * sum(gmsh.model.occ.getMass(2, tag) for _, tag in faces)
+    if len(faces) > MOST_FACES or not 2.0 * area / mesh_size**2 < MOST_TRIANGLES:
+        raise FileError(
+            f"{path}: has {len(faces)} faces and {area:.3g} m2, too much to be covered by triangles of {1e3 * mesh_size:.3g} mm: "
+            "is its unit right?"
+        )
 
 
 def _step(gmsh: Any, path: str, mesh_size: float) -> Drawing:
@@ -196,6 +212,7 @@ def _step(gmsh: Any, path: str, mesh_size: float) -> Drawing:
     if len(solids) != 1:
         raise FileError(f"{path}: has {len(solids)} solids; a cage is one: join its parts, or save it alone")
     occ = gmsh.model.occ
+    _check_size(gmsh, path, mesh_size)
     tags = [tag for _, tag in gmsh.model.getEntities(2)]
     triangles = _rough(gmsh, path, tags, mesh_size)
     volume, centre, inertia = _solid(gmsh, path, sum(len(one) for one in triangles.values()))

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from trbdyn.base.reading import LARGEST_DRAWN, MOST_TRIANGLES, read_input
 from trbdyn.errors import FileError
 
 FloatArray = NDArray[np.float64]
@@ -27,7 +28,7 @@ def doubled(triangles: FloatArray) -> FloatArray:
 
 def read_triangles(path: Path, scale: float) -> FloatArray:
     """Triangles of an STL file, shape (T, 3, 3), times a scale."""
-    data = path.read_bytes()
+    data = read_input(path, "STL", field="drawing")
     if len(data) >= 84 and len(data) == 84 + 50 * int.from_bytes(data[80:84], "little"):
         rows = np.frombuffer(data, dtype=np.dtype([("v", "<f4", (4, 3)), ("a", "<u2")]), offset=84)
         corners = rows["v"][:, 1:].astype(float)
@@ -40,6 +41,10 @@ def read_triangles(path: Path, scale: float) -> FloatArray:
             raise FileError(f"{path}: is no STL file: {error}") from None
     if not len(corners) or not np.all(np.isfinite(corners)):
         raise FileError(f"{path}: is no STL file: it has no triangles, or numbers that are not finite")
+    if len(corners) > MOST_TRIANGLES:
+        raise FileError(f"{path}: has {len(corners)} triangles; {MOST_TRIANGLES} are read")
+    if not 0.0 < scale * np.ptp(corners.reshape(-1, 3), axis=0).max() < 2.0 * LARGEST_DRAWN:
+        raise FileError(f"{path}: is no drawing of a part: it is a point, or larger than {2.0 * LARGEST_DRAWN:g} m")
     return scale * corners
 
 

@@ -4,24 +4,27 @@ from __future__ import annotations
 
 import os
 import re
+from itertools import islice
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trbdyn.base.own_files import file_path, read_whole
+from trbdyn.base.own_files import file_path
+from trbdyn.base.reading import LARGEST_DRAWN, MOST_LINES, MOST_POINTS, checked_file, read_input
 from trbdyn.errors import FileError, InputError
 
 Array = NDArray[np.float64]
 
 UNITS: Final = {"nm": 1e-9, "um": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "inch": 0.0254}
-LARGEST: Final = 64 << 20
-"""Most bytes of a file; a trace of 100 000 points has 2 MB."""
 FLATTENING: Final = 1e-9
 """Largest distance of a drawn curve from its polyline (m)."""
 JOINED: Final = 1e-6
 """Largest gap between ends of drawn lines that belong together (m)."""
+MOST_DEGREE: Final = 9
+MOST_CONTROLS: Final = 5000
+"""Degree and control points of a spline, at most."""
 _WRITTEN_UNIT: Final = re.compile(r"(?:[\[(]|_|\s)\s*(nm|um|µm|μm|mm|cm|m|inch|in)\s*(?:[\])]|$)", re.IGNORECASE)
 _LINES: Final = ("LINE", "LWPOLYLINE", "POLYLINE", "ARC", "SPLINE", "ELLIPSE")
 _DRAWN_UNITS: Final = {1: "inch", 4: "mm", 5: "cm", 6: "m", 13: "um"}
@@ -50,12 +53,7 @@ def points_of(
 
 
 def _measured(file: Path, position_unit: str | None, height_unit: str | None) -> tuple[Array, Array]:
-    try:
-        data = read_whole(file, LARGEST)
-    except OSError as error:
-        raise FileError(f"{file}: {error.strerror or error}") from None
-    except ValueError as error:
-        raise FileError(f"{file}: cannot be read: {error}") from None
+    data = read_input(file, "CSV")
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -116,6 +114,7 @@ def _unit_in(cell: str) -> str | None:
 def _drawn(file: Path, unit: str | None, layer: str | None) -> tuple[Array, Array]:
     """Points of the one line in a DXF file, or on one of its layers."""
     ezdxf = _library()
+    checked_file(file, "DXF")
     try:
         document = ezdxf.readfile(file)
     except OSError as error:
@@ -139,14 +138,44 @@ def _drawn(file: Path, unit: str | None, layer: str | None) -> tuple[Array, Arra
     if told is not None and unit is not None and told != unit:
         raise InputError.of("position_unit", unit, f"must be the unit of {file.name}, {told}, or left out")
     scale = UNITS[told or str(unit)]
+    points = _joined(_pieces(lines, scale, file), file, layers)
+    return points[:, 0], points[:, 1]
+
+
+def _pieces(lines: list[Any], scale: float, file: Path) -> list[Array]:
+    """Points of each drawn line (m)."""
     from ezdxf.path import make_path
 
-    pieces = [
-        scale * np.array([(point.x, point.y) for point in make_path(entity).flattening(FLATTENING / scale, segments=8)])
-        for entity in lines
-    ]
-    points = _joined([piece for piece in pieces if len(piece) > 1], file, layers)
-    return points[:, 0], points[:, 1]
+    if len(lines) > MOST_LINES:
+        raise FileError(
+            f"{file}: has {len(lines)} lines; {MOST_LINES} are joined: give the layer that holds the profile alone"
+        )
+    found: list[Array] = []
+    count = 0
+    for entity in lines:
+        kind, number = entity.dxftype(), entity.dxf.handle
+        if kind == "SPLINE" and not (entity.dxf.degree <= MOST_DEGREE and len(entity.control_points) <= MOST_CONTROLS):
+            raise FileError(
+                f"{file}: a spline has degree {entity.dxf.degree} and {len(entity.control_points)} control points; "
+                f"{MOST_DEGREE} and {MOST_CONTROLS} are drawn"
+            )
+        try:
+            path = make_path(entity)
+            reach = max((abs(part) for point in path.control_vertices() for part in point.xyz), default=0.0)
+        except (ValueError, ArithmeticError, IndexError, TypeError) as error:
+            raise FileError(f"{file}: {kind} {number} cannot be drawn: {error}") from None
+        if not scale * reach <= LARGEST_DRAWN:  # not a number, too
+            raise FileError(f"{file}: {kind} {number} reaches farther than {LARGEST_DRAWN:g} m, or is not finite")
+        left = MOST_POINTS - count
+        flat = [(point.x, point.y) for point in islice(path.flattening(FLATTENING / scale, segments=8), left + 1)]
+        if len(flat) > left:
+            raise FileError(f"{file}: has more than {MOST_POINTS} points within {1e9 * FLATTENING:g} nm of its curves")
+        count += len(flat)
+        if len(flat) > 1:
+            found.append(scale * np.array(flat))
+    if not found:
+        raise FileError(f"{file}: holds no line with two points")
+    return found
 
 
 def _library() -> Any:
@@ -159,25 +188,28 @@ def _library() -> Any:
 
 def _joined(pieces: list[Array], file: Path, layers: list[str]) -> Array:
     """One line of pieces that meet at their ends, whichever way and in whatever order each was drawn."""
-    line = pieces.pop(0)
-    while pieces:
-        for place, piece in enumerate(pieces):
-            fits = [(turned, at) for turned in (piece, piece[::-1]) for at in (0, -1) if _meet(line, turned, at)]
-            if fits:
-                turned, at = fits[0]
-                line = np.vstack([turned, line[1:]] if at == 0 else [line, turned[1:]])
-                del pieces[place]
+    ends = np.array([[piece[0], piece[-1]] for piece in pieces])
+    free = np.ones(len(pieces), dtype=bool)
+    free[0] = False
+    chain = [pieces[0]]
+    while free.any():
+        for at in (-1, 0):
+            tip = chain[at][at]
+            gaps = np.where(free[:, None], np.hypot(*(ends - tip).transpose(2, 0, 1)), np.inf)
+            place, end = np.unravel_index(int(np.argmin(gaps)), gaps.shape)
+            if gaps[place, end] < JOINED:
+                piece = pieces[int(place)]
+                turned = piece if end == (0 if at == -1 else 1) else piece[::-1]
+                chain.insert(len(chain) if at == -1 else 0, turned)
+                free[place] = False
                 break
         else:
+            told = ", ".join(layers[:20])
             raise FileError(
-                f"{file}: lines do not join to one: {len(pieces)} of them meet no end of the others within "
-                f"{1e6 * JOINED:g} µm; give the layer that holds the profile alone; layers: {', '.join(layers)}"
+                f"{file}: lines do not join to one: {np.count_nonzero(free)} of them meet no end of the others within "
+                f"{1e6 * JOINED:g} µm; give the layer that holds the profile alone; layers: {told}"
             )
+    line = np.vstack([chain[0], *(piece[1:] for piece in chain[1:])])
     if np.hypot(*(line[0] - line[-1])) < JOINED:
         raise FileError(f"{file}: the line is closed: the profile alone must be drawn, from end to end")
     return line
-
-
-def _meet(line: Array, piece: Array, at: int) -> bool:
-    other = piece[-1] if at == 0 else piece[0]
-    return bool(np.hypot(*(line[at] - other)) < JOINED)
