@@ -76,6 +76,7 @@ if TYPE_CHECKING:
     from trbdyn.run.options import RunOptions as RunOptions
     from trbdyn.run.rating import rating as rating
     from trbdyn.run.resume import resume as resume
+    from trbdyn.run.rexs import read_rexs as read_rexs, write_rexs as write_rexs
     from trbdyn.run.simulation import Simulation as Simulation
     from trbdyn.run.toml_assembly import load_assembly as load_assembly
     from trbdyn.run.toml_case import load_case as load_case

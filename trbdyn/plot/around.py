@@ -135,6 +135,10 @@ def pocket_polar(result: Result, ax: Axes | None = None, threshold: float = 0.0)
     return found
 
 
+THICK_FILM: Final = 5.0
+"""Film parameter at which the scale of its map ends: beyond it no surface touches, and thicker films, which unloaded ends of
+rollers have a thousand times, would hide the thin ones.
+"""
 _MAPS: Final[dict[str, tuple[str, str, float, str]]] = {
     "pressure": ("raceway_pressure", "largest Hertz pressure (GPa)", 1e-9, "Pressure"),
     "film": ("raceway_film", "central film thickness (µm)", 1e6, "Film thickness"),
@@ -204,6 +208,8 @@ def contact_map(
         grids.append(_filled(grid, count))
     finite = np.concatenate([grid[np.isfinite(grid)] for grid in grids])
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+    cut = quantity == "film_parameter" and high > THICK_FILM
+    high = max(THICK_FILM, low) if cut else high
     edges = np.linspace(0.0, 360.0, bins + 1)
     half = 0.5e3 * result.scene.bearing.roller.effective_length
     borders = np.concatenate([[-half], 0.5 * (stations[1:] + stations[:-1]), [half]])
@@ -215,7 +221,7 @@ def contact_map(
             ax.set_ylabel("along the roller (mm)")
             ax.grid(visible=False)
         axes[-1, 0].set(xticks=range(0, 361, 45), xlabel="place around the bearing from x towards y (deg)")
-        bar = figure.colorbar(mesh, ax=axes[:, 0])
+        bar = figure.colorbar(mesh, ax=axes[:, 0], extend="max" if cut else "neither")
         bar.set_label(label)
         figure.suptitle(f"{title} along the rollers (large end: +) and around the bearing", fontsize=10)
     return figure

@@ -38,7 +38,11 @@ def front(
 ) -> str:
     """The sheet of one bearing, or of all on a shaft."""
     several = len(results) > 1
-    parts = ["<section class='sheet'>", "<h2>Sheet</h2>", table_of(("calculation", ""), _head(results))]
+    parts = [
+        "<section class='sheet'>",
+        "<h2>Sheet</h2>",
+        f"<p>{'; '.join(f'{name} <b>{safe(text)}</b>' for name, text in _head(results))}</p>",
+    ]
     for one, name, listed, values, sheet, judged in zip(results, names, inputs, numbers, sheets, verdicts, strict=True):
         if several:
             parts.append(f"<h3>{safe(name)}</h3>")
@@ -75,19 +79,23 @@ def _inputs(result: Result, listed: Sequence[Row]) -> str:
         rows.append(("given", "catalogue", said))
     oil = scene.lubricant
     clean = f", cleanliness -/{oil.cleanliness}" if oil.cleanliness else ", cleanliness not given"
-    rows.append(("given", "oil", f"{oil.name} at {oil.temperature_c:g} C{clean}{', filtered' if oil.filtered else ''}"))
+    warm = "" if f"{oil.temperature_c:g} C" in oil.name else f" at {oil.temperature_c:g} C"
+    rows.append(("given", "oil", f"{oil.name}{warm}{clean}{', filtered' if oil.filtered else ''}"))
+    bands: list[str] = []
     for one in scene.bearing.estimated:
         value, unit = displayed(one.value, one.unit)
         low, high = (displayed(end, one.unit, like=one.value)[0] for end in (one.low, one.high))
         unit = "" if unit == "1" else f" {unit}"
-        rows.append(("estimated", one.path, f"{value}{unit}, {low} to {high}{unit}: {one.source}"))
-    assumed = [row.path for row in listed if row.mark == "assumed"]
+        bands.append(f"{one.path} {value} ({low} to {high}){unit}")
+    if bands:
+        rows.append(("estimated", f"{len(bands)} inputs", "; ".join(bands)))
+    assumed = [row.path.removeprefix("bearing.") for row in listed if row.mark == "assumed"]
     if assumed:
         more = f" and {len(assumed) - MOST_NAMES} more" if len(assumed) > MOST_NAMES else ""
         rows.append(("assumed", f"{len(assumed)} inputs", ", ".join(assumed[:MOST_NAMES]) + more))
     body = "".join(
         f"<tr class='{kind if kind != 'given' else ''}'><td class='mark'>{kind}</td><td class='q'>{safe(name)}</td>"
-        f"<td>{safe(text)}</td></tr>"
+        f"<td class='{'' if kind == 'given' else 'small'}'>{safe(text)}</td></tr>"
         for kind, name, text in rows
     )
     heads = "<tr class='heads'><th></th><th>input</th><th>value</th></tr>"
@@ -128,10 +136,6 @@ def _margins(values: Mapping[str, Any], sheet: Rating | str, judged: Sequence[Se
         add(f"largest pressure, {ring} ring", values.get(f"{ring}_pressure_max"), STATIC_LIMIT, "Pa", most=True)
     add("residual of the energy", values.get("energy_closure"), CLOSURE_LIMIT, "", most=True)
     table = table_of(("limit", "found", "asked for", "margin"), rows) if rows else ""
-    grades = {"good": "good", "care": "take care", "bad": "not good", "plain": ""}
-    said = "".join(
-        f"<tr><td class='q'>{safe(head)}</td><td class='mark'>{grades[grade]}</td><td>{safe(text)}</td></tr>"
-        for grade, head, text in judged
-    )
-    heads = "<tr class='heads'><th>verdict</th><th></th><th></th></tr>"
-    return f"<h3>Verdicts and margins</h3>{table}<table>{heads}{said}</table>"
+    grades = {"good": "good", "care": "take care", "bad": "not good", "plain": "not judged"}
+    said = "; ".join(f"{safe(head)}: <b>{grades[grade]}</b>" for grade, head, _ in judged)
+    return f"<h3>Verdicts and margins</h3>{table}<p>{said}.</p>"
