@@ -20,15 +20,13 @@ ASSEMBLY = trb.Assembly.pair(
     shaft=trb.Shaft.hollow_cylinder(mass=6.0, outer_diameter=0.05, length=0.3),
     speed_rpm=3000.0,
 )
-OF_SCENE: dict[str, Callable[[Any], Any]] = {
-    "cage_map": lambda given: trb.cage_map(given, [1000.0, 2000.0], [1000.0]),
-}
 OF_ANY: dict[str, Callable[[Any], Any]] = {
     name: getattr(trb, name) for name in ("Simulation", "stiffness", "uncertainty", "sensitivity")
 } | {
     "plan": lambda given: trb.plan(given, {"torque": 0.02}),
     "optimise": lambda given: trb.optimise(given, {"scene.axial_load": (1e3, 2e3)}, {"torque": "least"}),
     "cage_answer": trb.cage_answer,
+    "cage_map": lambda given: trb.cage_map(given, [1000.0, 2000.0], [1000.0]),
     "whirl_onset": lambda given: trb.whirl_onset(given, [1000.0, 2000.0]),
     "thermal": lambda given: trb.thermal(given, trb.HeatPaths(oil_flow=30.0)),
 }
@@ -52,14 +50,6 @@ def refused(call: Callable[[Any], Any], given: Any) -> str:
     with pytest.raises(InputError) as caught:
         call(given)
     return caught.value.allowed
-
-
-@pytest.mark.parametrize("name", OF_SCENE)
-def test_of_a_scene(name: str) -> None:
-    assert "must be a Scene: put it into one, trb.Scene(bearing" in refused(OF_SCENE[name], BEARING)
-    assert "this is done with one bearing alone" in refused(OF_SCENE[name], ASSEMBLY)
-    assert "trb.load_case reads" in refused(OF_SCENE[name], "rig_30310")
-    assert refused(OF_SCENE[name], None) == "must be a Scene"
 
 
 @pytest.mark.parametrize("name", OF_RESULT)
