@@ -98,11 +98,11 @@ def test_heat_and_supply_together() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("g", [3200.0, 4460.0])
 def test_the_default_law_over_its_range(g: float) -> None:
-    """400 to 460 nodes, the viscosity of Roelands: k holds within 6 % from W 2e-5 on, the law within 9 % below."""
+    """200 to 330 nodes, the viscosity of Roelands: k holds within 8 % from W 2e-5 on, the law within 10 % below."""
     for w in (2e-6, 1e-5, 2e-5, 5e-5, 1e-4):
         for u in (1e-11, 1e-10, 2.5e-10, 5e-10):
             law = laws.rolling_line_solution(w, u, g) / g
-            near = 0.06 if w >= 2e-5 else 0.09
+            near = 0.08 if w >= 2e-5 else 0.1
             assert law == pytest.approx(of_inlet(starved(w, u, g), u), rel=near)
 
 
