@@ -209,7 +209,8 @@ static void test_chosen(int variant, int width)
   trb_arrow_factors *f, *anew;
   double             x[2][MOST * TRB_NR + 64];
   if (!CHECK(trb_arrow_create(4, width, &a, NULL) == TRB_OK)) return;
-  CHECK(trb_arrow_factors_create(4, width, variant, &f, NULL) == TRB_OK && trb_arrow_factors_create(4, width, variant, &anew, NULL) == TRB_OK);
+  CHECK(trb_arrow_factors_create(4, width, variant, &f, NULL) == TRB_OK &&
+        trb_arrow_factors_create(4, width, variant, &anew, NULL) == TRB_OK);
   a->gamma = 0.5;
   randomise(a, SHIFTED_ROW_LARGE);
   CHECK(trb_arrow_factor(a, a->gamma, all, 4, f) == 1);
