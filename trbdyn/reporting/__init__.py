@@ -17,6 +17,7 @@ from trbdyn.errors import FileError, InputError, unknown_name
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.result import Result
 from trbdyn.results.sources import files_of
+from trbdyn.run.check import check
 
 __all__ = ["judgement", "report", "save_pdf"]
 
@@ -95,7 +96,6 @@ def report(
     from trbdyn.plot import PICTURES
     from trbdyn.plot.assembly import of_result
     from trbdyn.reporting.page import page
-    from trbdyn.run.check import check
 
     expect("result", result, Result, AssemblyResult)
     known = {*PICTURES, *of_result(result)}

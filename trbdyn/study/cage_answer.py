@@ -31,6 +31,7 @@ from trbdyn.results import observables
 from trbdyn.results.result import Result
 from trbdyn.run.options import RunOptions
 from trbdyn.run.simulation import Simulation
+from trbdyn.statics.creep import creep_time
 
 Array = NDArray[np.float64]
 
@@ -258,8 +259,6 @@ def cage_answer(
 
 def _creep_turns(part: Any) -> float:
     """Turns of the cage within which creep of the rollers changes the whirl (1)."""
-    from trbdyn.statics.creep import creep_time
-
     return (
         creep_time(part) * abs(part.orbit_speed(part.start.time)) / (2.0 * math.pi)
         if isinstance(part, Scene)
