@@ -32,7 +32,7 @@ struct trb_case {
 
 enum { TRB_CASE_FACES = 4 };
 
-/* The two bars and two end walls of each pocket that the plays give (docs/theory/geometry.md#pockets); TRB_CASE_FACES faces. */
+/* The two bars and two end walls of each pocket that the plays give (docs/theory/geometry.md#pockets-and-plays); TRB_CASE_FACES faces. */
 trb_status trb_case_faces(const trb_case *c, trb_face *faces, trb_message *message);
 
 /* What an error says, for a caller of the library. */

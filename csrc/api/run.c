@@ -65,7 +65,7 @@ static trb_status make_system(const trb_case *c, trb_run *run, trb_message *mess
 }
 
 /* Rollers and ring in equilibrium under the loads: the motion of the ring, which stays there, and the state of pure rolling
- * (docs/theory/motion.md#start-of-a-run). */
+ * (docs/theory/motion.md#equilibrium-of-the-ring). */
 static trb_status start(const trb_case *c, trb_run *run, double *state, trb_message *message)
 {
   const trb_model *m = run->model;
