@@ -240,8 +240,12 @@ def effects_from_table(table: Table) -> Effects:
     path = ("effects",)
     check_names(table, {*Effects.model_fields, "preset"}, path)
     preset = _choose({"preset": "standard", **table}, "preset", PRESETS, path)
-    values = merged(preset().to_dict(), without(table, "preset"))
-    if not table.keys() >= Effects.model_fields.keys():  # a whole table has the coefficients of every law
+    # a whole table has the coefficients of every law, and no line of what is None; one of an earlier version had full supply
+    always = {name for name, one in Effects.model_fields.items() if one.default is not None}
+    earlier = {"rolling_load": "slices", "supply": 1.0} if table.keys() >= always - {"rolling_load"} else {}
+    own = without(table, "preset")
+    values = merged(preset().to_dict(), (earlier if "rolling_load" not in table else {}) | own)
+    if not table.keys() >= always - {"rolling_load"}:
         with located(path):
             refuse_idle(values["damping"], values["lubrication"], table)
     return build(Effects, values, path)

@@ -15,6 +15,7 @@ from trbdyn.errors import InputError
 from trbdyn.model.assembly import Subject
 from trbdyn.model.bearing import Bearing
 from trbdyn.results.fields import table
+from trbdyn.results.rows.losses import BETWEEN, NOT_LOST
 from trbdyn.run.options import RunOptions
 from trbdyn.run.torque_laws import torque_laws
 from trbdyn.study.answer import Answer
@@ -252,7 +253,10 @@ def _shares(found: xarray.Dataset) -> Array:
     sums = dict.fromkeys(SOURCES, 0.0)
     for name, value in found.data_vars.items():
         part = str(name).removeprefix("torque_by_loss_")
-        if part == name:
+        if part == name or part in (
+            NOT_LOST,
+            BETWEEN,
+        ):  # what is stored, or lies between records, is no loss of a contact
             continue
         kind = next(kind for kind in SOURCES if part.startswith(kind))
         sums[kind] += float(np.nan_to_num(value))
