@@ -70,16 +70,18 @@ def test_found_failures_stay_mended(path):
 
 @pytest.mark.parametrize(("kind", "seed"), [("cylindrical", 97000007), ("usual", 97000013)])
 def test_a_difference_by_chance_gives_no_warning(kind, seed):
-    """A piece of 20 ms shows a difference in these right runs, a longer one shows that there is none."""
+    """A piece of 20 ms shows a difference in these right runs by CVODE, a longer one shows that there is none."""
     table = ORDINARY | draw(kind, seed)
     scene = make(table)
-    run = bounded_run(trb.Simulation(scene, accuracy=table["accuracy"]), scene_duration(scene), MOST_STEPS)
+    sim = trb.Simulation(scene, accuracy=table["accuracy"], integrator="bdf")
+    run = bounded_run(sim, scene_duration(scene), MOST_STEPS)
     assert run.warnings == ()
 
 
 def test_what_steps_take_after_a_drop_of_load_is_measured_from_the_drop_on():
     """A wheel hub without damping, whose load falls to a tenth at 5.4 ms and comes back at 12.5 ms, loses a fifth too little
-    between them; a piece that begins later, and ends under the full load, shows nothing.
+    between them by CVODE, and a third with steps of each body; a piece that begins later, and ends under the full load, shows
+    nothing.
     """
     scene = make(draw("hub", 98000011))
     drop, back = scene.axial_load.times[0], scene.axial_load.times[2]
@@ -88,7 +90,7 @@ def test_what_steps_take_after_a_drop_of_load_is_measured_from_the_drop_on():
     assert f"{1e3 * (back - drop):.2g} ms from {drop:.6g} s on were repeated" in said
     loss = re.search(r"the loss is ([\d.]+) \+/- ([\d.]+) % too low", said)
     assert loss is not None, said
-    assert 10.0 < float(loss[1]) < 30.0
+    assert 10.0 < float(loss[1]) < 50.0
 
 
 @pytest.mark.parametrize("unclear", [True, False])
