@@ -8,10 +8,6 @@
 static const double per_l1 = 2.0 / 3.0;
 /* Change of gamma up to which factors are used, as a share. */
 static const double gamma_change = 0.3;
-/* A first correction is taken without another evaluation where what corrections left when it was measured last promises that the equations then hold to
- * this share of the tolerance, and solves seldom fail; it is measured again after so many. */
-static const double promised = 0.3, seldom = 0.05;
-enum { MOST_SPARED = 8 };
 /* Share of their error by which skew, tilt and the spins that belong to them limit the step of rollers which touch the cage. They swing fast there; at this
  * share forces in pockets are as exact as with one step for all bodies, and no better below 1 (docs/theory/multirate.md#what-limits-a-step). */
 static const double swing_share = 0.5;
@@ -176,60 +172,22 @@ static void integrate(trb_multirate *s, const trb_team *team, double gamma)
   }
 }
 
-/* Whether the hub touches a ring's land, or may do so soon: then nothing is promised. */
-static int is_at_land(const trb_integrator *it)
-{
-  const trb_member   *member = &it->members[0];
-  const trb_dynamics *d = member->dynamics;
-  int                 near = 0;
-  for (int i = 0; i < d->work->n_hub; i++)
-    near |=
-        d->work->hub[i].pairs[0]->kind->approach != NULL && isfinite(member->impacts.speed[d->model->n_rollers + d->work->hub[i].index[0]]);
-  return near;
-}
-
-/* Takes the flows of rollers, with the rates of their integrals, from where they were evaluated to where the correction has led, by the slopes of the tangents. */
-static void carry_on(const trb_integrator *it, const trb_team *team)
-{
-  static const double none[TRB_TANGENT_OUT];
-  trb_multirate      *s = it->self;
-  const trb_tangents *t = s->jacobian->tangents;
-  const trb_dynamics *d = it->members[0].dynamics;
-  for (int k = 0; k < team->n; k++) {
-    const int j = team->rollers[k];
-    double    step[TRB_TANGENT_IN] = {0}, flow[TRB_TANGENT_OUT];
-    memcpy(step, s->movers[j].e, TRB_NR * sizeof *step);
-    memcpy(flow, d->flows[j], sizeof flow);
-    s->factors->kernels->follow(flow, (const double (*)[TRB_TANGENT_OUT])t->rollers[j].slope, step, none, 0.0, t->least, d->flows[j]);
-  }
-}
-
 static int iterate(trb_integrator *it, const trb_team *team, double end, double gamma, double tolerance, double failing, int exact)
 {
   trb_multirate *s = it->self;
   const int      size = team->n * TRB_NR + (team->with_hub ? s->movers[s->n_rollers].course.main : 0);
-  trb_mover     *head = trb_team_head(s, team);
-  const int spares = !exact && failing < seldom && head->spared < MOST_SPARED && head->kept > 0.0 && !(team->with_hub && is_at_land(it));
-  double    first = INFINITY, before = 0.0, square[TRB_NEWTON_MOST];
+  double         first = INFINITY, before = 0.0, square[TRB_NEWTON_MOST];
   for (int k = 0; k < trb_team_size(team); k++) memset(trb_team_mover(s, team, k)->e, 0, TRB_NP * sizeof(double));
   for (int m = 0; m < TRB_NEWTON_MOST; m++) {
     const double off = measure(it, team, end, gamma, exact);
     if (!isfinite(off)) return 0;
     for (int k = 0; k < team->n && m == 1 && off > trb_poor * before && off > trb_negligible * tolerance; k++)
       s->movers[team->rollers[k]].poor |= s->movers[team->rollers[k]].left > 0.5 * trb_poor * before;
-    if (m == 1 && before > 0.0) head->kept = off / before;
     solve(s, team);
     trb_newton_improve(m, size, s->weight, s->packed, s->taken, s->stride, square);
     s->count.nonlinear_iterations++;
     const double change = add(s, team);
-    if (m == 0 && spares && change <= tolerance && head->kept * off <= promised * tolerance) {
-      head->spared++;
-      carry_on(it, team);
-      integrate(s, team, gamma);
-      return 1;
-    }
     if (change <= tolerance && trb_newton_holds(failing, off, before, tolerance)) {
-      head->spared = 0;
       integrate(s, team, gamma);
       return 1;
     }

@@ -21,10 +21,8 @@ typedef struct trb_mover {
   double        slopes_at; /* when they were, s */
   int           age;       /* solves that the inverse of its own block was used for, where it steps alone */
   double        p[3][TRB_COURSE_ROOM], e[TRB_COURSE_ROOM], x[TRB_COURSE_ROOM];
-  double        kept;   /* of a team's head: share of what its equations lacked that a first correction left, when it was measured last */
-  int           spared; /* evaluations that were spared since then */
-  const double *flow;   /* its rates, as they were evaluated last */
-  double        left;   /* what its equations lack, in tolerances */
+  const double *flow; /* its rates, as they were evaluated last */
+  double        left; /* what its equations lack, in tolerances */
   trb_course    course;
 } trb_mover;
 
