@@ -170,7 +170,7 @@ except trb.InputError as error:
 
 def test_one_default_for_each_setting() -> None:
     assert RunOptions().settings() == {
-        "integrator": "bdf",
+        "integrator": "auto",
         **{
             name: SETTINGS[name].default
             for name in (

@@ -97,6 +97,8 @@ class Repeating:
         """Why the run cannot be repeated; empty where it can."""
         if self.subject is None:
             return "a bearing on a shaft is repeated with the others, by the result of all of them, and not from seats alone"
+        if not self.length > 0.0:
+            return "its records are of one instant"
         elastic = [part.scene.elastic_cage for part in self.parts.values()]
         if any(one is not None and one.file for one in elastic) or any(
             one is not None and part.scene.bearing.cage.drawing is not None
