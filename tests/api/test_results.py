@@ -563,7 +563,7 @@ def test_an_error_of_the_second_thread_reaches_the_next_call(
 
 
 def test_foreign_and_missing_files_are_told_apart(tmp_path: Path) -> None:
-    with pytest.raises(FileError, match="(?i)no such file"):
+    with pytest.raises(FileError, match=r"(?i)no such file"):
         load(tmp_path / "nothing.h5")
     (tmp_path / "text.h5").write_text("not a result")
     with pytest.raises(FileError, match="not an HDF5 file"):
