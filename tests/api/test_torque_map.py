@@ -112,6 +112,7 @@ class FakeRun:
     groups = ("energy", "torque")
     meta: ClassVar = {}
     scene = SimpleNamespace(torque=None)
+    on_shaft = False
 
     @property
     def parts(self) -> tuple[FakeRun, ...]:

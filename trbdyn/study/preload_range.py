@@ -139,7 +139,7 @@ def preload_range(
     ----------
     subject : Assembly or Scene
         Tapered bearings on a shaft, whose end play in sum is changed, in equal parts of all bearings without a spring; or one
-        cylindrical bearing, whose radial clearance is.
+        cylindrical bearing, whose radial clearance before mounting is, in place of `Mounting.clearance`.
     mounting : Mounting, or mapping of str to Mounting
         How each bearing is mounted.
     plays : sequence of float
@@ -182,7 +182,7 @@ def preload_range(
     rows = []
     for play in given:
         try:
-            found = preload_over(_mounted(subject, play), mounting, [temperature], paths=paths, **oil).rows[0]
+            found = preload_over(*_mounted(subject, mounting, play), [temperature], paths=paths, **oil).rows[0]
         except TrbError as error:
             if not isinstance(error, InputError) or error.field.endswith(("end_play", "radial_clearance")):
                 rows.append(AtPlay(play, None, str(error).splitlines()[0]))
@@ -192,8 +192,8 @@ def preload_range(
     return PreloadRange(tuple(rows), _best(rows), subject.title)
 
 
-def _mounted(subject: Subject, play: float) -> Subject:
-    """The subject with another mounted play."""
+def _mounted(subject: Subject, mounting: Any, play: float) -> tuple[Subject, Any]:
+    """The subject and how it is mounted, with another play."""
     free = [
         prefix
         for prefix, part in subject.parts.items()
@@ -202,9 +202,10 @@ def _mounted(subject: Subject, play: float) -> Subject:
     for prefix in free:
         subject = subject.with_part(prefix, end_play=play / len(free))
     if free:
-        return subject
+        return subject, mounting
     if isinstance(subject, Scene) and subject.bearing.is_cylindrical:
-        return subject.replace(bearing=subject.bearing.replace(radial_clearance=play))
+        expect("mounting", mounting, Mounting)
+        return subject, mounting.replace(clearance=(play, play))  # fits begin with that of the mounting
     limit = "must be an Assembly with a tapered bearing without a spring, or a Scene of a cylindrical bearing, which have a play"
     raise InputError.of("subject", subject.title, limit)
 
