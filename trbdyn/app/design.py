@@ -381,7 +381,7 @@ def mounting_arguments(made: Built, design: Design) -> dict[str, dict[str, Any]]
     named = {"left": design.typed.get("named.designation", "") if design.source == "named" else ""}
     named["right"] = str(made.values.get("pair.other", "")) or named["left"]
     found = {}
-    for name in made.subject.names if isinstance(made.subject, Assembly) else ("",):
+    for name in made.subject.names:
         page = Built()
         sizes = {path.removeprefix("page."): value for path, value in _read(page, design, of.page_fields()).items()}
         key = named.get(name or "left", "")

@@ -6,7 +6,7 @@ import contextlib
 import threading
 from collections.abc import Callable, Iterable
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
 from nicegui import events, run, ui
 
@@ -15,6 +15,7 @@ from trbdyn.app import units
 from trbdyn.app.design import Built, scene_fields
 from trbdyn.app.fields import Field
 from trbdyn.app.load_cases import COLUMNS, checked
+from trbdyn.app.questions import QUESTIONS
 from trbdyn.base.reading import tables_of
 from trbdyn.errors import TrbError
 from trbdyn.model.assembly import Assembly
@@ -131,8 +132,6 @@ def machine_of(page: Page) -> str:
 
 def show_start(page: Page) -> None:
     """Four questions: what turns, which bearing, under which load, and what is asked."""
-    from trbdyn.app.outcome import show_questions
-
     design = page.bench.design
 
     def turn(event: events.ValueChangeEventArguments[Any]) -> None:
@@ -151,6 +150,20 @@ def show_start(page: Page) -> None:
     ui.label("Oil, temperatures, fits and a spectrum of load cases are under Operation.").classes("text-gray-600")
     _heading("4. What do you want to know?")
     show_questions(page)
+
+
+def show_questions(page: Page) -> None:
+    """What the user wants to know."""
+    design = page.bench.design
+    with ui.row():
+        for name, question in QUESTIONS.items():
+
+            def ask(event: events.ValueChangeEventArguments[Any], name: str = name) -> None:
+                design.wants = [one for one in QUESTIONS if (event.value if one == name else one in design.wants)]
+                page._take_in()
+
+            box = ui.checkbox(question.words, value=name in design.wants, on_change=ask)
+            box.props["data-path"] = f"want.{name}"
 
 
 def _heading(words: str) -> None:
@@ -339,7 +352,7 @@ def open_case(content: bytes) -> dict[str, Any]:
 async def draw(built: Built) -> list[str]:
     """Drawings of the bearing and its pocket, as addresses of pictures; none where they cannot be drawn."""
     bearing = built.bearing
-    shaft = built.subject if isinstance(built.subject, Assembly) else None
+    shaft = cast(Assembly, built.subject) if built.subject is not None and len(built.subject.names) > 1 else None
     return [] if bearing is None else await run.io_bound(_drawn, bearing, shaft) or []
 
 

@@ -13,7 +13,6 @@ from trbdyn.app.forms import show_fields
 from trbdyn.app.jobs import Kept
 from trbdyn.app.load_cases import cases_of
 from trbdyn.app.program import script
-from trbdyn.app.questions import QUESTIONS
 from trbdyn.app.tasks import Also
 from trbdyn.reporting import converter
 from trbdyn.run.case_text import case_text, tables_text
@@ -24,20 +23,6 @@ if TYPE_CHECKING:
 MOST_VALUES: Final = 50
 """Most values of a sweep."""
 SWEEP_AXES: Final = ("scene.", "bearing.", "lubricant.temperature_c", "page.", "pair.", "effects.")
-
-
-def show_questions(page: Page) -> None:
-    """What the user wants to know."""
-    design = page.bench.design
-    with ui.row():
-        for name, question in QUESTIONS.items():
-
-            def ask(event: events.ValueChangeEventArguments[Any], name: str = name) -> None:
-                design.wants = [one for one in QUESTIONS if (event.value if one == name else one in design.wants)]
-                page._take_in()
-
-            box = ui.checkbox(question.words, value=name in design.wants, on_change=ask)
-            box.props["data-path"] = f"want.{name}"
 
 
 def show_controls(page: Page) -> None:
@@ -187,8 +172,8 @@ def _show_kept(page: Page, one: Kept) -> None:
                 ui.link(words, f"{address}/{name}", new_tab=name.endswith(".html")).props(f'data-path="file.{name}"')
         if page.bench.file(one.name, "report.html") and not page.bench.file(one.name, "report.pdf") and converter():
             again = {"page": "report.html"}
-            made = ui.link("make a PDF").on("click", lambda: page.bench.again("pdf", one.name, again))
-            made.classes("cursor-pointer").props('data-path="make.pdf"')
+            made = ui.button("make a PDF", on_click=lambda: page.bench.again("pdf", one.name, again))
+            made.props('no-caps flat dense data-path="make.pdf"')
     if one.kind == "sweep":
         _show_sweep(page, one, address)
         return

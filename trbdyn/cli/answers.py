@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from trbdyn.cli.case import subject_with_changes
 from trbdyn.cli.declared import CASE, FILE, SET, Options, argument, subcommand
@@ -33,17 +33,14 @@ def fit(options: Options) -> int:
     bearing's name is one.
     """
     from trbdyn.errors import InputError
-    from trbdyn.model.assembly import Assembly
     from trbdyn.model.designations import designation
     from trbdyn.model.mounting import Mounting, Temperatures
     from trbdyn.statics.fit import fit
 
     subject = subject_with_changes(options.case, options.changes)[0]
-    listed = (
-        dict(zip(subject.names, (one.bearing for one in subject.bearings), strict=True))
-        if isinstance(subject, Assembly)
-        else {"": subject.bearing}
-    )
+    listed: dict[str, Any] = {
+        name: cast(Any, part).bearing for name, part in zip(subject.names, subject.parts.values(), strict=True)
+    }
     seats = {}
     for name, bearing in listed.items():
         sizes: dict[str, Any] = {}
