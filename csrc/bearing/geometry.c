@@ -163,7 +163,7 @@ static trb_status check_kind(const trb_params *p, const trb_geometry *g, trb_mes
               {"outer_rib", p->outer_rib},
               {"outer_front_rib", p->outer_front_rib}};
   for (size_t i = 0; i < sizeof none / sizeof none[0]; i++)
-    if (none[i].value > 0.0)
+    if (fabs(none[i].value) > 0.0)
       return trb_fail(message, TRB_ERR_GEOMETRY, "%s = %g: must be 0 for tapered rollers", none[i].name, none[i].value);
   if (!(g->cone_half_angle > 0.0))
     return trb_fail(message, TRB_ERR_GEOMETRY, "cup_half_angle = %g rad: too small for rollers of diameter %g m on pitch diameter %g m",

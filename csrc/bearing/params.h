@@ -27,7 +27,7 @@
   X(cage,       cage_poisson_ratio,        "1",         0,      0.4999, "Poisson's ratio of the cage's faces") \
   X(roller,     sphere_ratio,              "1",         0.05,   0.999,  "large-end sphere radius over the apex distance of the roller's large end") \
   X(roller,     end_radius,                "m",         0,      1e3,    "radius of the sphere of the large end, of a cylinder of both ends; 0: it follows from sphere_ratio") \
-  X(bearing,    radial_clearance,          "m",         0,      0.01,   "radial internal clearance of a cylindrical bearing: way of one ring across the other") \
+  X(bearing,    radial_clearance,          "m",         -0.01,  0.01,   "radial internal clearance of a cylindrical bearing: way of one ring across the other; negative: preload") \
   X(rib,        rib_clearance,             "m",         0,      0.1,    "nominal gap between a cylindrical roller's end and each rib") \
   X(rib,        outer_rib,                 "choice",    0,      1,      "cylindrical rollers: large ends (towards +z) against a rib of the outer ring") \
   X(rib,        outer_front_rib,           "choice",    0,      1,      "cylindrical rollers: small ends (towards -z) against a rib of the outer ring") \

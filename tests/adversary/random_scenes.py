@@ -386,7 +386,7 @@ def cylindrical(rng: np.random.Generator) -> Table:
     if table["flanges"] in ("NJ", "NUP"):
         table |= {"axial_share": _log(rng, 0.01, 0.5), "front_rib": True}
     options: dict[str, Any] = {
-        "radial_clearance": lambda: _one_of(rng, 0.0, _log(rng, 1e-6, 2e-4)),
+        "radial_clearance": lambda: _one_of(rng, 0.0, _log(rng, 1e-6, 2e-4), -_log(rng, 1e-6, 4e-5)),
         "rib_clearance": lambda: _one_of(rng, 0.0, _log(rng, 1e-6, 3e-4)),
         "end_radius": lambda: _log(rng, 0.03, 20.0),
     }

@@ -210,3 +210,19 @@ def test_classes_of_a_time_series() -> None:
 def test_series_that_are_refused(given: Any, said: str) -> None:
     with pytest.raises(InputError, match=said):
         trb.series_table(*given)
+
+
+def test_what_is_no_load_case_is_refused_with_the_way() -> None:
+    seat = trb.Mounting(bore=0.040, outside=0.080, width=0.02475, shaft="m6", housing="N7")
+    fitted = trb.fit(SCENE, seat)
+    with pytest.raises(
+        trb.InputError, match=r"(?s)cases\[0\]\.subject = .*must be a Scene or an Assembly: .* fit\.subject"
+    ):
+        Spectrum([LoadCase("fitted", 1.0, fitted)])  # type: ignore[arg-type]
+    with pytest.raises(trb.InputError, match=r"(?s)cases = .*must be a list or a tuple"):
+        Spectrum(fitted)  # type: ignore[arg-type]
+    with pytest.raises(trb.InputError, match=r"(?s)cases\[0\] = .*must be a LoadCase: put it into one"):
+        Spectrum([SCENE])  # type: ignore[list-item]
+    with pytest.raises(trb.InputError, match=r"base = .*Fit.*fit\.subject"):
+        trb.spectrum(fitted, [{"share": 1.0}])
+    assert len(Spectrum([LoadCase("fitted", 1.0, fitted.subject)])) == 1

@@ -113,6 +113,29 @@ def test_restarts_are_exact(kit: SimpleNamespace, integrator: str) -> None:
         assert all(same(sim, other) for other in others)
 
 
+@pytest.mark.parametrize(
+    "changing",
+    [
+        {"ring": "follows", "radial_load": trb.History(times=(0.0, 4e-3, 8e-3), values=(0.0, 3000.0, 1000.0))},
+        {"ring": "held", "speed_rpm": trb.History(times=(0.0, 8e-3), values=(2000.0, 3000.0))},
+    ],
+    ids=["follows", "held"],
+)
+def test_a_start_from_a_state_under_changing_loads(changing: dict[str, Any]) -> None:
+    """A copy and a restart keep the motion that is prescribed. A start from a state computes it again from there: not the same
+    bits, but as close to the equilibria (0.3 nm each)."""
+    scene = trb.Scene(trb.cases.rig_30310(), **({"speed_rpm": 3000.0, "axial_load": 4930.0} | changing))
+    sim = Simulation(scene)
+    sim.run(duration=2.3e-3)
+    copy, anew = sim.copy(), Simulation(scene.replace(start=trb.Start.state(sim.state)))
+    sim.restart()
+    loads = [one.run(duration=1e-3)["inner_load"][-1] for one in (sim, copy, anew)]
+    assert same(sim, copy)
+    assert anew.time == sim.time
+    assert np.abs(anew.state.displacement - sim.state.displacement).max() < 6e-10
+    np.testing.assert_allclose(loads[2], loads[0], atol=1e-4 * loads[0].max())
+
+
 def test_a_copy_leaves_the_original_alone(kit: SimpleNamespace, reference: tuple[str, Simulation]) -> None:
     integrator, wanted = reference
     sim = started(kit, integrator=integrator)

@@ -70,7 +70,7 @@ def load_of(depth: float | Array, of: trb.Bearing) -> Any:
     return 0.356 * modulus * length ** (8.0 / 9.0) * np.maximum(depth, 0.0) ** (10.0 / 9.0)
 
 
-@pytest.mark.parametrize("clearance", [0.0, 20e-6, 80e-6])
+@pytest.mark.parametrize("clearance", [-15e-6, 0.0, 20e-6, 80e-6])
 @pytest.mark.parametrize("radial_load", [500.0, 20000.0])
 def test_equilibrium_of_a_radial_load(clearance: float, radial_load: float) -> None:
     """Where the ring stands, each roller in balance between two raceways, solved by SciPy, pushes it as the load asks."""
@@ -104,6 +104,20 @@ def test_equilibrium_of_a_radial_load(clearance: float, radial_load: float) -> N
     np.testing.assert_allclose(found.inner_load, np.linalg.norm(pushes, axis=1), rtol=1e-5, atol=1e-6 * radial_load)
     np.testing.assert_allclose(found.displacement[2:], 0.0)
     np.testing.assert_allclose(found.rollers[:, 1:], 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize("flanges", ["NU", "NJ", "NUP", "N"])
+def test_preload_by_a_negative_clearance(flanges: str) -> None:
+    """Without a radial load each roller is pressed together by half of the clearance, a quarter at each raceway."""
+    loose = {"displacement": PLACED, "axial_load": 0.0}
+    preloaded = scene(flanges, -20e-6, radial_load=0.0, speed_rpm=10.0, **loose)
+    found = trb.Simulation(preloaded).equilibrium
+    expected = load_of(5e-6, preloaded.bearing)
+    np.testing.assert_allclose(found.inner_load, expected, rtol=1e-3)
+    np.testing.assert_allclose(found.outer_load, expected, rtol=1e-3)
+    run = trb.Simulation(preloaded.replace(speed_rpm=3000.0)).run(duration=2e-3).summary()
+    assert abs(run["energy_closure"]) < 1e-3
+    assert abs(run["cage_slip"]) < 0.01
 
 
 @pytest.mark.parametrize("flanges", ["NJ", "NUP"])
@@ -332,6 +346,8 @@ def test_rings_are_drawn_whole(flanges: str) -> None:
         ),
         (lambda: bearing("NU", roller={"sphere_ratio": 0.9}), "roller.sphere_ratio = 0.9"),
         (lambda: trb.cases.rig_30310().replace(radial_clearance=1e-5), "must not be given for tapered"),
+        (lambda: trb.cases.rig_30310().replace(radial_clearance=-1e-5), "must not be given for tapered"),
+        (lambda: bearing("NU", -1.2e-3), "must be at least -0.0011 and below 0.011"),
         (
             lambda: trb.cases.rig_30310().replace(cup_half_angle_deg=0.3),
             "must be 0, for cylindrical rollers, or from 0.6",

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn.model.tolerances import bore_limits, clearance_limits, limits, outside_limits
+from trbdyn.model.tolerances import bore_limits, clearance_limits, limits, outside_limits, series_of
 from trbdyn.standards.sheet import Rating
 from trbdyn.statics.press_fit import PressFit
 
@@ -236,6 +237,26 @@ def test_probabilities_are_those_of_a_sample() -> None:
     assert found.subject.radial_clearance == told.mean
 
 
+def test_a_clearance_that_fits_turn_into_preload() -> None:
+    """NU 2210 of group C2 (5 to 35 um) on n6 (17 to 33 um, bore 0 to -12) and in N7 (-10 to -45, outside 0 to -15): the raceways
+    come closer by 0.84 and 0.8 of the interferences 31 and 20 um less what smoothing takes."""
+    page = {"bore": 0.050, "outside": 0.090, "width": 0.023, "C": 90e3, "C0": 88e3, "F": 0.0595, "flanges": "NU"}
+    seat = {"bore": 0.050, "outside": 0.090, "width": 0.023, "shaft": "n6", "housing": "N7"}
+    bearing = trb.Bearing.from_catalogue(**page)
+    found = trb.fit(bearing, trb.Mounting(**seat, clearance="C2"))
+    told, races = found.plays[""]["operating"], bearing.geometry
+    grows = 0.050 / (2.0 * races.inner_race_radius) * 31e-6 * 0.050 / 0.052
+    ring = PressFit(2.0 * races.outer_race_radius, 0.090, 0.135, STEEL, STEEL)
+    shrinks = 20e-6 * 0.090 / 0.092 * lame(ring, 1e-6)[2] / 1e-6
+    assert told.mean == pytest.approx(20e-6 - grows - shrinks, abs=0.1e-6)
+    assert told.mean == pytest.approx(-21e-6, abs=0.5e-6)
+    assert told.preloaded > 0.99
+    assert "preloaded" in str(found)
+    assert found.subject.radial_clearance == told.mean
+    driven_up = trb.fit(bearing, trb.Mounting(**{**seat, "housing": "K6"}, clearance=(-8e-6, -2e-6)))
+    assert driven_up.plays[""]["mounted"].mean < -5e-6
+
+
 def test_a_pinion_in_aluminium() -> None:
     """Two bearings 0.11 m apart, 60 K warmer in aluminium: 76 um by the length between them, more than three times the 22.7 um
     that 5 kN of preload are.
@@ -352,3 +373,101 @@ def test_the_sheet_of_ratings_shows_the_fits() -> None:
     assert plain.to_dict()["fits"] is None
     with pytest.raises(trb.InputError, match="a rating needs speed and loads"):
         trb.rating(trb.fit(trb.cases.rig_30310(), seat))
+
+
+@pytest.mark.parametrize(
+    ("code", "size", "ends"),
+    [("K4", 0.005, (-3.5, 0.5)), ("N4", 0.005, (-10.5, -6.5)), ("M4", 0.008, (-8.5, -4.5)), ("K4", 0.015, (-4.0, 1.0))],
+)
+def test_fine_holes_of_small_sizes(code: str, size: float, ends: tuple[float, float]) -> None:
+    """ISO 286-1:2010, table 1: IT3 is 2.5 um from 3 to 10 mm, which its rule for fine holes takes; limits of ISO 286-2."""
+    assert limits(code, size) == pytest.approx([1e-6 * end for end in ends], abs=1e-12)
+
+
+def test_a_mounted_set_says_why_nothing_changes() -> None:
+    """Not ten zeros: a set whose end play was measured when mounted has its fits in it."""
+    one = trb.fit(pair(), trb.Mounting(**SEAT))
+    assert "set = 'mounted', and has the fits in it" in " ".join(str(one).split())
+    assert "the parts grow not at all or alike, so nothing does" in " ".join(str(one).split())
+    assert "What changes the play" not in str(one)
+    warm = " ".join(
+        str(
+            trb.fit(
+                pair(), trb.Mounting(**SEAT, housing_material=ALUMINIUM), temperatures=trb.Temperatures.uniform(60.0)
+            )
+        ).split()
+    )
+    assert "only temperatures change it. Sets" in warm
+    before = str(trb.fit(pair(), trb.Mounting(**SEAT, set="before mounting")))
+    assert "has the fits in it" not in before
+    assert "left shaft fit" in before
+
+
+@pytest.mark.parametrize(
+    ("size", "accuracy", "bore", "outside"),
+    [
+        # SKF, Tolerances for inch tapered roller bearings; NTN, Large Bearings, table 3.5
+        (0.03175, "normal", 13, 25),
+        (0.0762, "4", 13, 25),
+        (0.0763, "4", 25, 25),
+        (0.0762, "3", 13, 13),
+        (0.2, "2", 25, 25),
+        (0.2, "3", 13, 13),
+        (0.2, "0", 13, 13),
+        (0.2, "00", 8, 8),
+        (0.304, "4", 25, 25),
+        (0.4, "4", 51, 51),
+        (0.4, "3", 25, 25),
+        (0.8, "4", 76, 76),
+        (0.8, "3", 38, 38),
+    ],
+)
+def test_tolerances_of_inch_series(size: float, accuracy: Any, bore: float, outside: float) -> None:
+    """ISO 578: bore and outside diameter lie above the nominal size."""
+    for of, most in ((bore_limits, bore), (outside_limits, outside)):
+        assert of(size, tapered=True, accuracy=accuracy, series="inch") == pytest.approx((0.0, 1e-6 * most))
+
+
+@pytest.mark.parametrize(
+    ("name", "bore", "outside", "series"),
+    [
+        ("LM67048/LM67010", 0.03175, 0.059131, "inch"),
+        ("LM67048 - LM67010", 0.03175, 0.059131, "inch"),
+        ("LM67048/10", 0.03175, 0.059131, "inch"),
+        ("33275/33462", 0.069850, 0.117475, "inch"),
+        ("49585/49520", 0.050800, 0.101600, "inch"),
+        ("JLM104948/JLM104910", 0.050, 0.082, "metric"),
+        ("32208 J2/Q", 0.040, 0.080, "metric"),
+        ("HR32208J", 0.040, 0.080, "metric"),
+        ("30310", 0.050, 0.110, "metric"),
+        ("a hub", 0.03175, 0.059131, "inch"),
+        ("a hub", 0.050, 0.110, "metric"),
+        ("31.75x59.131x15.875", 0.03175, 0.059131, "inch"),
+    ],
+)
+def test_what_tells_an_inch_series(name: str, bore: float, outside: float, series: str) -> None:
+    assert series_of(name, bore, outside)[0] == series
+
+
+def test_a_fit_says_whose_tolerances_it_took() -> None:
+    inch = trb.Bearing.named("LM67048/LM67010")
+    seat = {"bore": inch.bore, "outside": inch.outside, "width": inch.width, "shaft": "m6", "housing": "N7"}
+    found = trb.fit(inch, trb.Mounting(**seat))
+    assert "tolerances of ISO 578, class 4 (inch series, by its designation LM67048/LM67010)" in " ".join(
+        str(found).split()
+    )
+    # m6 at 31.75 mm is 9 to 25 um, the bore 0 to 13 um above
+    assert (found[""].seats[0].least, found[""].seats[0].most) == pytest.approx((9e-6 - 13e-6, 25e-6))
+    metric = trb.fit(inch, trb.Mounting(**seat, series="metric"))
+    assert "ISO 492, class normal (metric series, as given)" in " ".join(str(metric).split())
+    assert metric[""].seats[0].least == pytest.approx(9e-6)
+    fine = trb.fit(inch, trb.Mounting(**seat, accuracy="3"))
+    assert "ISO 578, class 3" in str(fine)
+    assert fine[""].seats[1].most == pytest.approx(found[""].seats[1].most - 12e-6)
+    with pytest.raises(trb.InputError, match=r"accuracy = '5' .*ISO 578 has no other"):
+        trb.fit(inch, trb.Mounting(**seat, accuracy="5"))
+    with pytest.raises(trb.InputError, match=r"accuracy = '00' .*classes of inch series"):
+        trb.fit(trb.cases.rig_30310(), trb.Mounting(**SEAT, accuracy="00"))
+    nj210 = {"bore": 0.050, "outside": 0.090, "width": 0.020, "shaft": "k5", "housing": "H7"}
+    with pytest.raises(trb.InputError, match="ISO 578 has tapered ones alone"):
+        trb.fit(trb.cases.bearing_nj210(), trb.Mounting(**nj210, series="inch"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
@@ -126,6 +127,26 @@ def test_the_load_lines_cross_the_axis_at_the_load_centres() -> None:
         assert left.radial_load == pytest.approx(1500.0, rel=1e-8)
         assert right.radial_load == pytest.approx(1500.0, rel=1e-8)
         assert left.axial_load == pytest.approx(right.axial_load, rel=1e-8)
+
+
+def test_preload_diagram_goes_through_the_operating_point() -> None:
+    """A helical gear pushes along the axis at its pitch circle: the moment of this force shifts loads between the bearings, and
+    acts at every point of the diagram."""
+    shaft = trb.Shaft.hollow_cylinder(mass=6.0, outer_diameter=0.05, length=0.3)
+    gear = trb.ShaftLoad.gear(position=0.02, pitch_diameter=0.2, torque=600.0, helix_angle_deg=20.0)
+    pair = trb.Assembly.pair(
+        trb.cases.rig_30310(), "back to back", spread=0.15, end_play=-40e-6, shaft=shaft, speed_rpm=3000, loads=[gear]
+    )
+    found = trb.equilibrium(pair)
+    place = float(found.displacement()[2])
+    diagram = trb.preload_diagram(pair, [place])
+    for one in found.bearings:
+        assert diagram.loads[one.name][0] == pytest.approx(one.axial_load, rel=1e-6)
+    assert diagram.axial_force[0] == pytest.approx(gear.force[2], rel=1e-6)
+    assert [one.axial_load for one in diagram.operating.bearings] == [one.axial_load for one in found.bearings]
+    assert f"{found['left'].axial_load:.5g} N" in str(diagram)
+    whole = trb.preload_diagram(pair)
+    assert whole.displacement.min() < place < whole.displacement.max()
 
 
 def test_preload_diagram_is_that_of_two_single_bearings() -> None:
@@ -299,3 +320,42 @@ def test_the_sheet_of_a_pair_says_what_the_profile_does() -> None:
     found = trb.stiffness(trb.load_assembly("pair_30310"))
     assert found.with_straight_rollers > 1.0
     assert "With straight ones" in str(found)
+
+
+def test_stiffness_of_a_shaft_names_its_point() -> None:
+    found = str(trb.stiffness(pair()))
+    assert "Stiffness of the shaft at" in found
+    assert "about the shaft's centre of mass, at" in " ".join(found.split())
+    assert "roller-centre plane" not in found
+    alone = str(trb.stiffness(trb.Scene(BEARING, speed_rpm=1000.0, axial_load=5000.0)))
+    assert "Stiffness of the inner ring" in alone
+    assert "about the roller-centre plane" in alone
+
+
+@pytest.mark.parametrize("radius", [0.02, 0.3])
+def test_a_drawing_shows_the_arrow_of_every_load(radius: float) -> None:
+    """The road pushes a wheel far below its bearings: the arrow is drawn at the border, and tells where it acts."""
+    road = trb.ShaftLoad.wheel(position=0.03, rolling_radius=radius, load=5000.0, cornering=0.3)
+    hub = pair(speed_rpm=0.0, outer_speed_rpm=800.0, loads=(road,))
+    with plt.rc_context():
+        ax = trb.plot.shaft_drawing(hub)
+        (low, high), (left, right) = ax.get_ylim(), ax.get_xlim()
+        arrows = [text for text in ax.texts if getattr(text, "arrow_patch", None) is not None]
+        assert len(arrows) == 1
+        for z, y in (arrows[0].xy, arrows[0].xyann):
+            assert left <= z <= right
+            assert low <= y <= high
+        assert arrows[0].xy[1] < arrows[0].xyann[1]  # on the spindle, down
+        assert any("acts at y = -300 mm" in text.get_text() for text in ax.texts) == (radius > 0.1)
+        plt.close(ax.get_figure())
+
+
+def test_a_bearing_that_is_turned_over_is_said() -> None:
+    two = pair(speed_rpm=1000.0)
+    assert two.turned_over == tuple(name for name, one in zip(two.names, two.bearings, strict=True) if one.side > 0.0)
+    (name,) = two.turned_over
+    result = trb.Simulation(two, accuracy="fast").run(duration=2e-4)
+    assert result[name].scene.speed_rpm == -1000.0
+    said = " ".join(str(result).split())
+    assert f"{name} is shown in axes of its own, turned by half a turn about x" in said
+    assert said.count("axes of its own") == 1

@@ -276,6 +276,11 @@ class Assembly(TurningRings, Model):
             gravity=(x, scaled(y, turned), scaled(z, turned)),
         )
 
+    @property
+    def turned_over(self) -> tuple[str, ...]:
+        """Names of the bearings whose own axes are turned by half a turn about x against those of the shaft, see `scene`."""
+        return tuple(name for name, one in zip(self.names, self.bearings, strict=True) if one.side > 0.0)
+
     def _check(self) -> None:
         if len(self.bearings) < 2:
             limit = "must be two or more; a Scene with ring = 'free' is a shaft on one bearing"

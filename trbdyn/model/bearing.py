@@ -78,6 +78,7 @@ class Bearing(Catalogued):
         The land of a ring that guides the cage, where one does.
     radial_clearance : float
         Radial internal clearance of a cylindrical bearing in operation (m); 0 by default: rollers and rings just touch.
+        Negative: preload, each roller is pressed together by half of it; by a tenth of its diameter at most.
     name : str
         Name in titles and files.
     bore, outside, width : float, optional
@@ -316,6 +317,13 @@ class Bearing(Catalogued):
                     f"must be below the diameter of the rollers, {most:g} (m); {value:g} mm would be {1e-3 * value:g} m"
                 )
                 raise InputError.of((part, name), value, allowed)
+        least = -MOST_PRELOAD * most
+        if not least <= self.radial_clearance < most:
+            allowed = (
+                f"must be at least {least:g} and below {most:g}: from a preload by a tenth of the rollers' diameter to a "
+                "clearance as large as it (m)"
+            )
+            raise InputError.of("radial_clearance", self.radial_clearance, allowed)
 
     def _check_profiles(self) -> None:
         half = 0.5 * self.roller.effective_length
@@ -384,6 +392,8 @@ _OF_CONES: Final = (
     ("roller", "sphere_ratio"),
 )
 """Numbers of the plane front rib and of an end whose sphere the apex scales: only tapered bearings have them."""
+MOST_PRELOAD: Final = 0.1
+"""Largest preload of a cylindrical bearing, in units of the rollers' diameter: steel is dented from about 0.015 of it on."""
 SAME_SIZE: Final = 1e-5
 """Difference by which two statements of one boundary dimension differ by rounding (m)."""
 LEAST_CONE_DEG: Final = 0.6

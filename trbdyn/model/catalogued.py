@@ -78,7 +78,7 @@ class Catalogued(Model):
             Distance of the load centre of a tapered bearing from the face of its outer ring at the small ends (m): tables of an
             `Assembly` then say where that face is.
         radial_clearance : float, optional
-            Clearance of a cylindrical bearing in operation (m); by default half of group N of ISO 5753-1.
+            Clearance of a cylindrical bearing in operation (m), negative: preload; by default half of group N of ISO 5753-1.
         name : str
             Name; by default the boundary dimensions.
 

@@ -8,7 +8,7 @@ from typing import Annotated, Final, Literal, Self
 from trbdyn.base.validation import Gap, Length, Model, Number, unit
 from trbdyn.errors import InputError
 from trbdyn.model.material import Material
-from trbdyn.model.tolerances import CLEARANCES, BearingClass, Limits, clearance_limits, limits
+from trbdyn.model.tolerances import CLEARANCES, BearingClass, Limits, Series, clearance_limits, limits, series_of
 
 Celsius = Annotated[Number, unit("C", ge=-200, le=600)]
 Deviation = Annotated[Number, unit("m", ge=-0.01, le=0.01)]
@@ -30,11 +30,16 @@ class Mounting(Model):
     shaft, housing : str or tuple of float
         Tolerance class of the seat by ISO 286, as ``"m6"`` and ``"N7"``, or the lower and upper deviation from the nominal size
         (m).
-    accuracy : {'normal', '6', '5', '4'}
-        Class of the bearing's tolerances by ISO 492; tapered bearings have no 6, and their 6X has the diameters of 'normal'.
+    accuracy : {'normal', '6', '5', '4', '2', '3', '0', '00'}
+        Class of the bearing's tolerances: normal, 6, 5 or 4 by ISO 492; tapered bearings have no 6, and their 6X has the
+        diameters of 'normal'. Of an inch series 4, which is 'normal', 2, 3, 0 or 00 by ISO 578.
+    series : {'metric', 'inch'}, optional
+        Series of a tapered bearing, which decides between ISO 492 and ISO 578. By default its designation tells it, cone and
+        cup as LM67048/LM67010 or five digits as 32208, else its diameters, which are whole millimetres in a metric series.
+        Cylindrical bearings are metric.
     clearance : str or tuple of float
-        Radial clearance of a cylindrical bearing before mounting: 'C2', 'CN', 'C3' or 'C4' by ISO 5753-1, or its limits (m).
-        Tapered bearings do not use it.
+        Radial clearance of a cylindrical bearing before mounting: 'C2', 'CN', 'C3' or 'C4' by ISO 5753-1, or its limits (m),
+        negative ones as well, as a tapered bore that is driven up its seat has them. Tapered bearings do not use it.
     set : {'mounted', 'before mounting'}
         When the end play of tapered bearings was set. That of mounted bearings has the fits in it already: only what
         temperatures change acts. Sets that are matched by spacers before mounting lose end play by their fits.
@@ -64,7 +69,8 @@ class Mounting(Model):
     shaft: str | tuple[Deviation, Deviation]
     housing: str | tuple[Deviation, Deviation]
     accuracy: BearingClass = "normal"
-    clearance: str | tuple[Gap, Gap] = "CN"
+    series: Series | None = None
+    clearance: str | tuple[Deviation, Deviation] = "CN"
     set: Literal["mounted", "before mounting"] = "mounted"
     shaft_bore: Gap = 0.0
     housing_outside: Length | None = None
@@ -109,6 +115,10 @@ class Mounting(Model):
     def housing_limits(self) -> Limits:
         """Deviations of the housing's bore (m)."""
         return limits(self.housing, self.outside, field="housing") if isinstance(self.housing, str) else self.housing
+
+    def series_for(self, name: str) -> tuple[Series, str]:
+        """Series of a tapered bearing of this name, and what tells it."""
+        return (self.series, "as given") if self.series is not None else series_of(name, self.bore, self.outside)
 
     @property
     def clearance_limits(self) -> Limits:

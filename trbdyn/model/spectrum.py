@@ -6,9 +6,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from trbdyn.base.expected import expect
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.errors import InputError
-from trbdyn.model.assembly import Subject
+from trbdyn.model.assembly import Assembly, Subject
+from trbdyn.model.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -48,6 +50,10 @@ class Spectrum(Displayed):
     cases: tuple[LoadCase, ...]
 
     def __init__(self, cases: Sequence[LoadCase]) -> None:
+        expect("cases", cases, list, tuple)
+        for index, one in enumerate(cases):
+            expect(f"cases[{index}]", one, LoadCase)
+            expect(f"cases[{index}].subject", one.subject, Scene, Assembly)
         object.__setattr__(self, "cases", tuple(cases))
         names = [one.name for one in self.cases]
         for index, one in enumerate(self.cases):

@@ -147,6 +147,10 @@ class Start(Model):
     ) -> Self:
         """A saved state: ``Start.state(sim.state)`` goes on where a simulation is, with its loads and its ring.
 
+        Where speed and loads are constant the run has the bits of the simulation that goes on. Where they change, the ring's path
+        and the speed are computed again from that time on, and differ by rounding and by the tolerance of a path, 0.3 nm;
+        `Simulation.copy` and checkpoints keep them (docs/theory/motion.md#the-inner-ring).
+
         Parameters
         ----------
         vector : State, or array_like of shape (n_state,)

@@ -1,5 +1,5 @@
-"""Limits of shafts and housing bores (ISO 286), of bores and outside diameters of bearings (ISO 492), and of the radial clearance
-of cylindrical bearings (ISO 5753-1); docs/theory/fits.md#tolerances.
+"""Limits of shafts and housing bores (ISO 286), of bores and outside diameters of bearings (ISO 492, of inch series of tapered
+ones ISO 578), and of the radial clearance of cylindrical bearings (ISO 5753-1); docs/theory/fits.md#tolerances.
 """
 
 from __future__ import annotations
@@ -12,12 +12,14 @@ from trbdyn.errors import InputError
 
 Limits = tuple[float, float]
 """Lower and upper limit (m)."""
-BearingClass = Literal["normal", "6", "5", "4"]
+BearingClass = Literal["normal", "6", "5", "4", "2", "3", "0", "00"]
+"""Classes of ISO 492 (normal, 6, 5, 4) and of ISO 578 (4, 2, 3, 0, 00)."""
+Series = Literal["metric", "inch"]
 
 SIZES: Final = (3, 6, 10, 18, 30, 50, 80, 120, 180, 250, 315, 400, 500)
 """Nominal sizes go from above one of these to the next one (mm)."""
-GRADES: Final[dict[int, tuple[int, ...]]] = {
-    3: (2, 2, 3, 4, 4, 5, 6, 8, 10, 12, 13, 15),
+GRADES: Final[dict[int, tuple[float, ...]]] = {
+    3: (2.5, 2.5, 3, 4, 4, 5, 6, 8, 10, 12, 13, 15),
     4: (4, 4, 5, 6, 7, 8, 10, 12, 14, 16, 18, 20),
     5: (5, 6, 8, 9, 11, 13, 15, 18, 20, 23, 25, 27),
     6: (8, 9, 11, 13, 16, 19, 22, 25, 29, 32, 36, 40),
@@ -89,6 +91,31 @@ OUTSIDES: Final[dict[bool, dict[BearingClass, tuple[int, ...]]]] = {
     },
 }
 """The same of the mean outside diameter."""
+
+INCH_SIZES: Final = (0.0, 76.2, 266.7, 304.8, 609.6, 914.4)
+INCH_BORES: Final[dict[BearingClass, tuple[int, ...]]] = {
+    "4": (13, 25, 25, 51, 76),
+    "2": (13, 25, 25, 51, 76),
+    "3": (13, 13, 13, 25, 38),
+    "0": (13, 13, 13, 25, 38),
+    "00": (8, 8),
+}
+"""How far above the nominal size the bore of a tapered bearing of an inch series may lie (um), by class and size; the lower limit
+is the nominal size: ISO 578 as the tables of SKF (Tolerances for inch tapered roller bearings) and NTN (Large Bearings, table
+3.5) have it. That of class 00 up to 76.2 mm is recalled.
+"""
+INCH_OUTSIDES: Final[dict[BearingClass, tuple[int, ...]]] = {
+    "4": (25, 25, 25, 51, 76),
+    "2": (25, 25, 25, 51, 76),
+    "3": (13, 13, 13, 25, 38),
+    "0": (13, 13, 13, 25, 38),
+    "00": (8, 8),
+}
+"""The same of the outside diameter: the table of SKF; class 00 is recalled."""
+_INCH_NAME: Final = re.compile(r"(?!J)[A-Z]{0,4}\d{2,6}[A-Z]{0,3}[/-][A-Z]{0,4}\d{2,6}[A-Z]{0,3}")
+_METRIC_NAME: Final = re.compile(r"(?:HR|4T-?|H-E|H-|ET-|E)?[23]\d{4}(?!\d|[/-]\d).*")
+WHOLE: Final = 1e-6
+"""How far a diameter of a metric series may be off whole millimetres (m)."""
 
 CLEARANCE_SIZES: Final = (24, 30, 40, 50, 65, 80, 100, 120, 140, 160, 180, 200, 225, 250, 280, 315, 355, 400, 450, 500)
 CLEARANCES: Final[dict[str, tuple[tuple[int, ...], tuple[int, ...]]]] = {
@@ -183,26 +210,61 @@ def limits(code: str, size: float, *, field: str = "tolerance") -> Limits:
     return 1e-6 * ends[0], 1e-6 * ends[1]
 
 
-def bore_limits(size: float, *, tapered: bool, accuracy: BearingClass = "normal") -> Limits:
-    """Deviations of a bearing's bore from its nominal size (m); ISO 492:2014, mean in a plane.
+def series_of(name: str, bore: float, outside: float) -> tuple[Series, str]:
+    """The series of a tapered bearing, and what tells it: its designation, or its bore and outside diameter (m).
+
+    Cone and cup, as LM67048/LM67010, are an inch series, whose designations with a J have metric sizes; five digits from 20000 on
+    are a metric one. Other names tell nothing: both diameters of a metric series are whole millimetres.
+
+    Examples
+    --------
+    >>> from trbdyn.model.tolerances import series_of
+    >>> series_of("LM67048/LM67010", 0.03175, 0.059131), series_of("hub", 0.050, 0.110)
+    (('inch', 'its designation LM67048/LM67010'), ('metric', 'its diameters 50 and 110 mm'))
+    """
+    asked = name.upper().replace(" ", "")
+    if _INCH_NAME.fullmatch(asked):
+        return "inch", f"its designation {name}"
+    if _METRIC_NAME.fullmatch(asked):
+        return "metric", f"its designation {name}"
+    off = max(abs(size - 1e-3 * round(1e3 * size)) for size in (bore, outside))
+    return "metric" if off <= WHOLE else "inch", f"its diameters {1e3 * bore:.6g} and {1e3 * outside:.6g} mm"
+
+
+def bore_limits(size: float, *, tapered: bool, accuracy: BearingClass = "normal", series: Series = "metric") -> Limits:
+    """Deviations of a bearing's bore from its nominal size (m): ISO 492:2014, mean in a plane; of an inch series of tapered
+    bearings ISO 578, whose class 4 is the normal one.
 
     Raises
     ------
     InputError
         If the standard has no such class, or the size lies outside of the table.
     """
+    if tapered and series == "inch":
+        return _of_inch(INCH_BORES, size, accuracy, "bore")
     return _of_bearing(BORES[tapered], SIZES[2:], size, accuracy, "bore")
 
 
-def outside_limits(size: float, *, tapered: bool, accuracy: BearingClass = "normal") -> Limits:
-    """Deviations of a bearing's outside diameter from its nominal size (m); ISO 492:2014, mean in a plane.
+def outside_limits(
+    size: float, *, tapered: bool, accuracy: BearingClass = "normal", series: Series = "metric"
+) -> Limits:
+    """Deviations of a bearing's outside diameter from its nominal size (m), as `bore_limits`.
 
     Raises
     ------
     InputError
         If the standard has no such class, or the size lies outside of the table.
     """
+    if tapered and series == "inch":
+        return _of_inch(INCH_OUTSIDES, size, accuracy, "outside")
     return _of_bearing(OUTSIDES[tapered], OUTSIDE_SIZES, size, accuracy, "outside")
+
+
+def standard_of(*, tapered: bool, accuracy: BearingClass, series: Series) -> str:
+    """Standard and class of the tolerances of a bearing, in words."""
+    if tapered and series == "inch":
+        return f"ISO 578, class {_inch_class(accuracy)}"
+    return "ISO 492, class normal" if accuracy == "normal" else f"ISO 492, class {accuracy}"
 
 
 def clearance_limits(group: str, bore: float) -> Limits:
@@ -220,6 +282,19 @@ def clearance_limits(group: str, bore: float) -> Limits:
     return 1e-6 * least[at], 1e-6 * most[at]
 
 
+def _inch_class(accuracy: BearingClass) -> BearingClass:
+    """The normal class of inch series is 4."""
+    return "4" if accuracy == "normal" else accuracy
+
+
+def _of_inch(classes: dict[BearingClass, tuple[int, ...]], size: float, accuracy: BearingClass, field: str) -> Limits:
+    if (named := _inch_class(accuracy)) not in classes:
+        limit = f"must be normal, which is 4, or one of {', '.join(classes)}: ISO 578 has no other for inch series"
+        raise InputError.of("accuracy", accuracy, limit)
+    widths = classes[named]
+    return 0.0, 1e-6 * widths[_row(INCH_SIZES[: len(widths) + 1], size, field)]
+
+
 def _of_bearing(
     classes: dict[BearingClass, tuple[int, ...]],
     sizes: tuple[int, ...],
@@ -228,12 +303,15 @@ def _of_bearing(
     field: str,
 ) -> Limits:
     if accuracy not in classes:
-        raise InputError.of("accuracy", accuracy, f"must be one of {', '.join(classes)}: ISO 492 has no other here")
+        limit = (
+            f"must be one of {', '.join(classes)}: ISO 492 has no other here; 2, 3, 0 and 00 are classes of inch series"
+        )
+        raise InputError.of("accuracy", accuracy, limit)
     widths = classes[accuracy]
     return -1e-6 * widths[_row(sizes[: len(widths) + 1], size, field)], 0.0
 
 
-def _row(sizes: tuple[int, ...], size: float, field: str) -> int:
+def _row(sizes: tuple[float, ...], size: float, field: str) -> int:
     """Which row of a table a size (m) lies in: above one of its sizes (mm) up to the next one."""
     millimetres = round(1e3 * size, 9)
     if not sizes[0] < millimetres <= sizes[-1]:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, Final
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -30,6 +31,9 @@ from trbdyn.statics.preload import preload_diagram as diagram_of
 
 Array = NDArray[np.float64]
 
+ARROW: Final = 0.55
+"""Length of the largest load's arrow, over the largest radius that is drawn."""
+
 __all__ = ["bearing_loads", "load_zones", "preload_diagram", "shaft_drawing", "shaft_motion", "shaft_orbits"]
 
 
@@ -46,11 +50,15 @@ def preload_diagram(diagram: PreloadDiagram, ax: Axes | None = None) -> Axes:
         for index, (name, load) in enumerate(diagram.loads.items()):
             line(ax, place, 1e-3 * load, index, f"axial load of {name}")
         line(ax, place, 1e-3 * diagram.axial_force, len(diagram.loads), "axial force on the shaft")
-        middle = 1e6 * float(diagram.preload.displacement()[2])
-        for one in diagram.preload.bearings:
-            ax.plot(middle, 1e-3 * one.axial_load, "o", color=GREY, ms=5)
+        for found, label, inside in (
+            (diagram.preload, "without axial force", "white"),
+            (diagram.operating, "operating point", GREY),
+        ):
+            where = 1e6 * float(found.displacement()[2])
+            loads = [1e-3 * one.axial_load for one in found.bearings]
+            ax.plot([where] * len(loads), loads, "o", color=GREY, markerfacecolor=inside, ms=5, label=label, zorder=3)
+            ax.axvline(where, color=GREY, linewidth=0.8, linestyle=":")
         ax.axhline(0.0, color=GREY, linewidth=0.8)
-        ax.axvline(middle, color=GREY, linewidth=0.8, linestyle=":")
         ax.set(xlabel="axial displacement of the shaft to the right (um)", ylabel="axial load (kN)")
         legend(ax)
     return ax
@@ -126,7 +134,8 @@ def shaft_drawing(assembly: Assembly, ax: Axes | None = None) -> Axes:
             tops.append(top)
             bores.append(min(points[:, 1].min() for points in outlines))
             ends += [*(end for points in outlines for end in points[:, 0]), centre]
-        ends += [1e3 * load.position for load in assembly.loads]
+        arrows = _arrows(assembly, max(tops))
+        ends += [place for one in arrows for place in (one.start[0], one.end[0])]
         low, high = min(ends) - 8.0, max(ends) + 8.0
         ax.add_patch(
             Rectangle((low, -min(bores)), high - low, 2.0 * min(bores), facecolor="#F5F6F7", edgecolor=LIGHT, zorder=0)
@@ -142,7 +151,7 @@ def shaft_drawing(assembly: Assembly, ax: Axes | None = None) -> Axes:
             label="centre of mass of the shaft",
         )
         ax.plot([], [], "o:", color=COLOURS[0], ms=4, label="load centres")
-        _arrows(assembly, ax, 0.55 * max(tops))
+        _draw(arrows, ax)
         ax.set_aspect("equal")
         ax.set(xlim=(low - 4.0, high + 4.0), ylim=(-1.15 * max(tops), 1.25 * max(tops)))
         ax.set(xlabel="along the shaft, z (mm)", ylabel="across, y (mm)")
@@ -161,18 +170,43 @@ def _mirrored(ax: Axes, points: Array, **style: Any) -> None:
         ax.add_patch(Polygon(points * [1.0, side], edgecolor="black", linewidth=0.8, **style))
 
 
-def _arrows(assembly: Assembly, ax: Axes, longest: float) -> None:
-    """Forces in the plane of the drawing, y and z, and how large the part across it, x, is."""
+@dataclass(frozen=True)
+class _Arrow:
+    """A load in the drawing, (z, y) in mm."""
+
+    start: tuple[float, float]
+    end: tuple[float, float]
+    words: str
+
+
+def _arrows(assembly: Assembly, reach: float) -> list[_Arrow]:
+    """Forces in the plane of the drawing, y and z, and how large the part across it, x, is.
+
+    A force that acts further from the axis than what is drawn, up to `reach` (mm), as that of the road on a wheel, is drawn at
+    the border, and the words tell where it acts.
+    """
     forces = [[value_at(part, 0.0) for part in load.force] for load in assembly.loads]
     largest = max((math.hypot(*force[1:]) for force in forces), default=0.0)
+    scale = ARROW * reach / largest if largest > 0.0 else 0.0
+    found = []
     for load, force in zip(assembly.loads, forces, strict=True):
-        at = (1e3 * load.position, 1e3 * load.offset[1])
-        scale = longest / largest if largest > 0.0 else 0.0
-        end = (at[0] + scale * force[2], at[1] + scale * force[1])
+        at, along, up = 1e3 * load.offset[1], scale * force[2], scale * force[1]
+        outside = abs(at) > reach
+        start = min(max(at, -reach - min(up, 0.0)), reach - max(up, 0.0)) if outside else at
         words = f"{math.hypot(*force[1:]):.4g} N" + (f", x {force[0]:.4g} N" if force[0] else "")
-        ax.annotate("", end, at, arrowprops={"arrowstyle": "-|>", "color": COLOURS[6], "linewidth": 1.6}, zorder=7)
-        ax.annotate(words, end, (4, 4), textcoords="offset points", color=COLOURS[6], fontsize=8, zorder=8)
-    if forces:
+        if outside:
+            words += f", acts at y = {at:.4g} mm"
+        place = 1e3 * load.position
+        found.append(_Arrow((place, start), (place + along, start + up), words))
+    return found
+
+
+def _draw(arrows: list[_Arrow], ax: Axes) -> None:
+    for one in arrows:
+        style = {"arrowstyle": "-|>", "color": COLOURS[6], "linewidth": 1.6}
+        ax.annotate("", one.end, one.start, arrowprops=style, zorder=7)
+        ax.annotate(one.words, one.end, (4, 4), textcoords="offset points", color=COLOURS[6], fontsize=8, zorder=8)
+    if arrows:
         ax.plot([], [], color=COLOURS[6], linewidth=1.6, label="loads, their part in this plane")
 
 

@@ -18,7 +18,7 @@ from trbdyn.reporting.inputs import Row, rows
 from trbdyn.reporting.ratings import frequencies_section, ratings_section, sheet_of, system_section
 from trbdyn.reporting.tables import number_text, safe
 from trbdyn.reporting.verdict import Sentence, verdict, verdict_of_shaft, warnings
-from trbdyn.results.assembly import AssemblyResult
+from trbdyn.results.assembly import TURNED_OVER, AssemblyResult
 from trbdyn.results.numbers import drawn_of, of_picture
 from trbdyn.results.result import Result
 from trbdyn.results.rows.ratings import RATINGS, of_sheet
@@ -68,7 +68,8 @@ def page(
     for bearing in bearings:
         of_one = [result.by_name[bearing] for result in results]
         called = names if len(results) > 1 else [bearing]
-        parts.append(_body(of_one, called, f"Bearing {bearing}", of_bearings, bearing, checks, reliability))
+        note = TURNED_OVER.format("This bearing is") if bearing in results[0].turned_over else ""
+        parts.append(_body(of_one, called, f"Bearing {bearing}", of_bearings, bearing, checks, reliability, note=note))
     return _whole(heading, "\n".join(parts) + tables.further(shown))
 
 
@@ -120,8 +121,9 @@ def _body(
     reliability: float,
     *,
     signed: bool = False,
+    note: str = "",
 ) -> str:
-    """One bearing of each run; `bearing` is its name on a shaft."""
+    """One bearing of each run; `bearing` is its name on a shaft, and a note is said at its head."""
     numbers = [result.summary() for result in results]
     sheets = [sheet_of(result, reliability) for result in results]
     inputs = [rows(result.scene) for result in results]
@@ -131,7 +133,7 @@ def _body(
             results, numbers, sheets, inputs, names, checks, strict=True
         )
     ]
-    parts = [_head(results, names, title)]
+    parts = [_head(results, names, title), *([f"<p>{safe(note)}</p>"] if note else [])]
     if signed and len(results) == 1:
         parts.append(_sheet(results, names, reliability))
     if len(results) > 1:

@@ -30,6 +30,11 @@ Array = NDArray[np.float64]
 TOGETHER: Final = "together"
 """Column of what is that of all bearings."""
 """Factors of units in the table of an assembly, and the units there."""
+TURNED_OVER: Final = (
+    "{} shown in axes of its own, turned by half a turn about x against those of the shaft, as its small ends point to the "
+    "right: speeds, y and z have the opposite sign there, and a cage that hangs down is drawn above the axis."
+)
+"""What is said of a bearing that sits the other way round."""
 
 
 class AssemblyResult(Mapping[str, Result], Displayed):
@@ -96,6 +101,7 @@ class AssemblyResult(Mapping[str, Result], Displayed):
             f"{sum(one.get('power_loss') or 0.0 for one in found.values()):.5g} W.",
             f"The shaft's centre of mass is at ({mean[0]:.4g}, {mean[1]:.4g}, {mean[2]:.4g}) um in the mean, and moves by up "
             f"to {np.hypot(*(shaft - mean)[:, :2].T).max():.3g} um about that across the axis.",
+            *(TURNED_OVER.format(f"{name} is") for name in self.turned_over),
             *self.warnings,
         )
         parts = tuple(one._shown() for one in found.values())
@@ -244,6 +250,11 @@ class AssemblyResult(Mapping[str, Result], Displayed):
             raise InputError.of("assembly", None, "must be known, to say where a point of the shaft is")
         arm = number_of("position", position) - self.assembly.shaft.mass_position
         return self.shaft_position + arm * (self.shaft_axis - [0.0, 0.0, 1.0])
+
+    @property
+    def turned_over(self) -> tuple[str, ...]:
+        """Names of the bearings whose results are in axes turned over against those of the shaft; none if it is unknown."""
+        return () if self.assembly is None else self.assembly.turned_over
 
     @property
     def _signs(self) -> Array:

@@ -170,7 +170,7 @@ class ForceSpectrum(Tabled):
     amplitude : ndarray, shape (n,)
         Amplitude of the sine that each is (N), one-sided; half a resolution beside a line it is up to 15 % low (Hann window).
     density : ndarray, shape (n,)
-        Power spectral density (N2/Hz), one-sided; its integral is the mean square.
+        Power spectral density (N2/Hz), one-sided; its integral is the mean square about the mean, of single hits as well.
     force : Force
         The force over time.
     shaft_frequency : float
@@ -215,8 +215,10 @@ def force_spectrum(result: Derived, on: On, along: Along, segments: int) -> Forc
     force = force_of(result, on, along)
     if not isinstance(segments, int) or not 1 <= segments <= force.values.size // 16:
         raise InputError.of("segments", segments, f"must be a whole number from 1 to {force.values.size // 16}")
-    frequency, density = observables.spectrum(force.interval * np.arange(force.values.size), force.values, segments)
-    amplitude = np.sqrt(2.0 * density * HANN * (frequency[1] - frequency[0]))
+    times = force.interval * np.arange(force.values.size)
+    frequency, density = observables.spectrum(times, force.values, segments)
+    _, lines, _ = observables.windowed(times, force.values, segments)
+    amplitude = np.sqrt(2.0 * lines * HANN * (frequency[1] - frequency[0]))
     shaft = abs(float(result.turning_speed.mean())) / (2.0 * np.pi)
     return ForceSpectrum(frequency, amplitude, density, force, shaft)
 

@@ -128,6 +128,11 @@ class Result(Derived, Displayed):
         return Shown(title, tuple(rows), ("quantity", "value", "unit"), parts=tuple(parts))
 
     @property
+    def turned_over(self) -> tuple[str, ...]:
+        """As `AssemblyResult.turned_over`: a bearing alone is in its own axes."""
+        return ()
+
+    @property
     def success(self) -> bool:
         """Whether the run reached its end."""
         return self._info.success

@@ -220,6 +220,8 @@ class ShaftEquilibrium(Tabled):
             speed_rpm=value_at(self.assembly.speed_rpm, self.time),
             subject=self.assembly,
             time=self.time,
+            body="shaft",
+            point=f"the shaft's centre of mass, at {1e3 * shaft.mass_position:.4g} mm along the shaft",
         )
 
     def _at(self, position: float) -> Balance:

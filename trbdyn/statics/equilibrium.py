@@ -257,7 +257,7 @@ class EquilibriumSolver:
         push, clearance, count = float(np.hypot(*radial)), bearing.radial_clearance, bearing.n_rollers
         line = 0.356 * geometry.effective_modulus * bearing.roller.effective_length ** (8.0 / 9.0)
         if push > 0.0:
-            moved = 0.5 * clearance + 2.0 * (5.0 * push / (count * line)) ** 0.9
+            moved = 0.5 * max(clearance, 0.0) + 2.0 * (5.0 * push / (count * line)) ** 0.9
             place[:2] = np.where(load.fixed[:2] > 0.0, place[:2], moved * radial / push)
         along = bearing.ribs.clearance + (axial / (count * geometry.rib_stiffness)) ** (2.0 / 3.0)
         if axial > 0.0 and not load.fixed[2]:

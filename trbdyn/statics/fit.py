@@ -22,7 +22,7 @@ from trbdyn.model.bearing import Bearing, check_boundary
 from trbdyn.model.growth import apex_slide, material_strain, part_strain
 from trbdyn.model.mounting import Mounting, Temperatures
 from trbdyn.model.scene import Scene
-from trbdyn.model.tolerances import Limits, bore_limits, outside_limits
+from trbdyn.model.tolerances import Limits, bore_limits, outside_limits, standard_of
 from trbdyn.statics.press_fit import PressFit
 
 Array = NDArray[np.float64]
@@ -116,6 +116,8 @@ class BearingFit:
         How it is mounted.
     temperatures : Temperatures
         Of operation.
+    tolerances : str
+        Standard and class of the bearing's diameters, and what chose them.
     """
 
     name: str
@@ -123,6 +125,7 @@ class BearingFit:
     parts: dict[str, float]
     mounting: Mounting
     temperatures: Temperatures
+    tolerances: str
 
 
 class Fit(Mapping[str, BearingFit], Displayed):
@@ -166,7 +169,11 @@ class Fit(Mapping[str, BearingFit], Displayed):
         """Plain dictionaries, lists, numbers and text, as JSON takes them."""
         return {
             "bearings": {
-                name: {"seats": [asdict(seat) for seat in one.seats], "parts": dict(one.parts)}
+                name: {
+                    "seats": [asdict(seat) for seat in one.seats],
+                    "parts": dict(one.parts),
+                    "tolerances": one.tolerances,
+                }
                 for name, one in self._bearings.items()
             },
             "plays": {name: {when: asdict(play) for when, play in plays.items()} for name, plays in self.plays.items()},
@@ -201,6 +208,7 @@ class Fit(Mapping[str, BearingFit], Displayed):
         changes = [
             (f"{name} {part.replace('_', ' ')}".strip(), _um(value))
             for name, one in self._bearings.items()
+            if name not in self._unchanged
             for part, value in one.parts.items()
         ]
         head = ("seat", "interference um", "interferes", "operating um", "pressure MPa", "raceway um")
@@ -208,12 +216,45 @@ class Fit(Mapping[str, BearingFit], Displayed):
             "End play and clearance, negative: preload",
             tuple(rows),
             ("play", "mean um", "99 % of the parts um", "preloaded"),
-            (*self.warnings, NOTE),
+            (*self.warnings, *self._standards(), *self._why_unchanged(), NOTE),
             (
                 Shown("Fits of the seats", tuple(seats), head),
-                Shown("What changes the play", tuple(changes), ("part", "um")),
+                *([Shown("What changes the play", tuple(changes), ("part", "um"))] if changes else []),
             ),
         )
+
+    @property
+    def _mounted(self) -> list[str]:
+        """Tapered bearings whose end play was set when they were mounted."""
+        return [
+            name for name, one in self._bearings.items() if one.mounting.set == "mounted" and name not in self.plays
+        ]
+
+    @property
+    def _unchanged(self) -> list[str]:
+        """Those of them whose end play nothing changes."""
+        return [name for name in self._mounted if not any(self._bearings[name].parts.values())]
+
+    def _standards(self) -> list[str]:
+        """Whose tolerances the bearings have, those that share them together."""
+        said: dict[str, list[str]] = {}
+        for name, one in self._bearings.items():
+            said.setdefault(one.tolerances, []).append(name)
+        return [
+            f"{', '.join(names)}: ".lstrip(": ") + f"bore and outside diameter have the tolerances of {text}."
+            for text, names in said.items()
+        ]
+
+    def _why_unchanged(self) -> list[str]:
+        if not self._mounted:
+            return []
+        still, names = self._unchanged, [name for name in self._mounted if name]
+        said = f"{', '.join(names)}: " if names else ""
+        said += "the end play was set with mounted bearings, set = 'mounted', and has the fits in it: only temperatures change it"
+        if still:
+            of = "" if still == self._mounted else f" of {', '.join(still)}"
+            said += f"; at these temperatures the parts{of} grow not at all or alike, so nothing does"
+        return [f"{said}. Sets that are matched before mounting have set = 'before mounting'."]
 
 
 NOTE: Final = (
@@ -287,7 +328,9 @@ def fit(
         one = _Mounted(bearing, mountings[name], warm[name], places.get(name), path)
         draws = one.draws(shares[:, 5 * k : 5 * k + 5])
         middle = one.draws(np.zeros((1, 5)))
-        found[name] = BearingFit(name, one.seats(middle), one.changes(middle), mountings[name], warm[name])
+        found[name] = BearingFit(
+            name, one.seats(middle), one.changes(middle), mountings[name], warm[name], one.tolerances
+        )
         mounted[name], operating[name] = one.plays(draws)
         means[name] = float(operating[name].mean())
     groups = {name: [name] for name, bearing in bearings.items() if bearing.is_cylindrical}
@@ -343,10 +386,16 @@ class _Mounted:
             ),
         }
         tapered, accuracy = not bearing.is_cylindrical, mounting.accuracy
+        series, why = mounting.series_for(bearing.name) if tapered else ("metric", "")
+        if not tapered and mounting.series == "inch":
+            limit = "must be 'metric' for cylindrical bearings: ISO 578 has tapered ones alone"
+            raise InputError.of((*path, "series"), mounting.series, limit)
+        self.tolerances = standard_of(tapered=tapered, accuracy=accuracy, series=series)
+        self.tolerances += f" ({series} series, {why if why == 'as given' else f'by {why}'})" if why else ""
         self.limits: tuple[Limits, ...] = (
             mounting.shaft_limits,
-            bore_limits(mounting.bore, tapered=tapered, accuracy=accuracy),
-            outside_limits(mounting.outside, tapered=tapered, accuracy=accuracy),
+            bore_limits(mounting.bore, tapered=tapered, accuracy=accuracy, series=series),
+            outside_limits(mounting.outside, tapered=tapered, accuracy=accuracy, series=series),
             mounting.housing_limits,
             mounting.clearance_limits if bearing.is_cylindrical else (0.0, 0.0),
         )

@@ -76,6 +76,9 @@ class Stiffness(Tabled):
         Speed of the shaft (rpm).
     subject : Scene, Assembly or None
         Whose stiffness it is, at the time `time` (s).
+    body, point : str
+        What moves, and the point of its axis at which displacements, forces and moments are taken, in words: of one bearing the
+        inner ring and the roller-centre plane, of an assembly the shaft and its centre of mass.
     """
 
     _headed = True
@@ -88,6 +91,8 @@ class Stiffness(Tabled):
     speed_rpm: float
     subject: Scene | Assembly | None = None
     time: float = 0.0
+    body: str = "inner ring"
+    point: str = "the roller-centre plane"
 
     @cached_property
     def with_straight_rollers(self) -> float | None:
@@ -126,11 +131,11 @@ class Stiffness(Tabled):
         rows = tuple((name, *(plain(value, 5) for value in row)) for name, row in zip(names, shown, strict=True))
         heads = tuple(f"{name} ({'per µm' if k < 3 else 'per mrad'})" for k, name in enumerate(COORDINATES))
         return Shown(
-            f"Stiffness of the inner ring at {self.speed_rpm:g} rpm",
+            f"Stiffness of the {self.body} at {self.speed_rpm:g} rpm",
             rows,
             head=("force (N), moment (N m)", *heads),
             notes=(
-                "Forces in N, moments in N m, about the roller-centre plane; rollers stay in equilibrium, without friction.",
+                f"Forces in N, moments in N m, about {self.point}; rollers stay in equilibrium, without friction.",
                 *self._profile(),
             ),
         )
@@ -138,8 +143,8 @@ class Stiffness(Tabled):
     @property
     def springs(self) -> dict[str, float]:
         """The same as springs at one point of the axis, without coupling between them: `radial` and `axial` (N/m), `tilt`
-        (N m/rad), and the axial `position` of the point from the roller-centre plane (m), positive towards the large ends. Exact
-        under an axial load alone; else the means of both directions.
+        (N m/rad), and the axial `position` of the point from that of `matrix` (m), of a bearing positive towards the large ends.
+        Exact under an axial load alone; else the means of both directions.
 
         A second bearing that faces the first, with its roller-centre plane at the distance L towards the large ends, is the
         support ``support_radial=radial, support_axial=axial, support_tilt=tilt, support_position=L - position`` of a `RingBody`.

@@ -56,6 +56,10 @@ class Base:
         elif isinstance(base, Subject):
             made = cls(base.tables(), whole=True)
         elif isinstance(base, Mapping):
+            if wrong := [name for name, table in base.items() if not isinstance(table, Mapping | list)]:
+                way = ": that of a fit is fit.subject" if type(base).__name__ == "Fit" else ""
+                limit = f"must be a Scene, an Assembly, the tables of a case or the name of one{way}; {wrong[0]!r} is no table"
+                raise InputError.of("base", type(base).__name__, limit)
             made = cls(dict(base))
         else:
             made = cls(read_toml(base))

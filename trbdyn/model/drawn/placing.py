@@ -20,6 +20,14 @@ SAME: Final = 2e-3
 ENOUGH: Final = 0.6
 """Share of the area that must come together: a broken pocket does not, nor a mark."""
 MOST_POCKETS: Final = 200
+LEAST_FIT: Final = -0.03
+"""Overlap of roller and cage, over the roller's radius, up to which a place is still one: triangles are rough."""
+FREE: Final = 0.2
+"""Distance, over the roller's radius, beyond which none is looked for."""
+STOPPED: Final = 0.1
+"""Overlap, over the roller's radius, from which on a cage stops a roller."""
+MOST_MAXIMA: Final = 3
+"""Most local maxima of the distance that are looked at for each direction of the cage."""
 
 
 @dataclass(frozen=True)
@@ -210,42 +218,95 @@ class Frustum:
 
 
 def place_of(drawing: Drawing, axis: Axis, count: int, roller: Frustum) -> Place:
-    """Where the drawing must lie so that rollers fit into its pockets: by a search over both directions, heights and angles, in
-    which the least distance between roller and cage, the middle one of all pockets, is largest. A cage into which no roller fits
+    """Where the drawing must lie so that rollers fit into its pockets: by a search over both directions, heights and angles.
+
+    At each the least distance between roller and cage counts, the middle one of all pockets. Its local maxima are looked at one
+    by one, as rollers fit beside a cage and between its bars as well: a pocket holds its roller on both sides and at both ends.
+    The place with most of these stops is taken, and of several that with the largest distance. A cage into which no roller fits
     is refused.
     """
     points = _spread(np.concatenate([face.triangles for face in drawing.faces]), 0.3 * roller.radius)
     own = axis.inside(points)
-    pitch = 2.0 * math.pi / count
     spans = (float(own[:, 2].min()), float(own[:, 2].max()))
-    results = []
+    best: tuple[int, float, bool, tuple[float, float]] | None = None
     for is_turned in (False, True):
         flipped = own * np.array([1.0, -1.0, -1.0]) if is_turned else own
         flipped = np.stack(
             [np.arctan2(flipped[:, 1], flipped[:, 0]), np.hypot(flipped[:, 0], flipped[:, 1]), flipped[:, 2]], axis=1
         )
-        low, high = sorted((-spans[0], -spans[1]) if is_turned else spans)
-        heights, phases = np.linspace(low, high, 17), np.arange(16) * pitch / 16
-        grid = [(height, phase) for height in heights for phase in phases]
-        fits = np.array([_clearance(flipped, height, phase, pitch, count, roller) for height, phase in grid])
-        best = grid[int(np.argmax(fits))]
-        step = np.array([heights[1] - heights[0], phases[1]])
-        for _ in range(6):
-            around = [
-                (best[0] + i * step[0], best[1] + j * step[1])
-                for i in (-1.0, -0.5, 0.0, 0.5, 1.0)
-                for j in (-1.0, -0.5, 0.0, 0.5, 1.0)
-            ]
-            values = [_clearance(flipped, height, phase, pitch, count, roller) for height, phase in around]
-            best, fit = around[int(np.argmax(values))], max(values)
-            step = 0.5 * step
-        results.append((fit, is_turned, best))
-    fit, is_turned, (height, phase) = max(results, key=lambda entry: entry[0] - (1e-9 if entry[1] else 0.0))
-    if fit < -0.03 * roller.radius:
+        search = _Search(flipped, sorted((-spans[0], -spans[1]) if is_turned else spans), count, roller)
+        for fit, at in search.maxima():
+            entry = (search.stops(at) if fit >= LEAST_FIT * roller.radius else -1, fit, is_turned, at)
+            if best is None or entry[:2] > (best[0], best[1] + 1e-9):
+                best = entry
+    assert best is not None  # the largest value of a grid is a local maximum
+    _, fit, is_turned, (height, phase) = best
+    if fit < LEAST_FIT * roller.radius:
         raise FileError(
             f"{drawing.path}: rollers of the bearing do not fit into its pockets: they overlap by {-1e3 * fit:.3g} mm at best"
         )
     return Place(axis, is_turned, float(height), float(phase))
+
+
+class _Search:
+    """Distances between roller and cage over heights (m) and angles of a pitch (rad)."""
+
+    def __init__(self, points: FloatArray, span: list[float], count: int, roller: Frustum) -> None:
+        self.points, self.count, self.roller, self.pitch = points, count, roller, 2.0 * math.pi / count
+        self.heights, self.phases = np.linspace(span[0], span[1], 17), np.arange(16) * self.pitch / 16
+
+    def fit(self, height: float, phase: float) -> float:
+        """Least distance at a place, the middle one of all pockets (m)."""
+        return _clearance(self.points, height, phase, self.pitch, self.count, self.roller)
+
+    def maxima(self) -> list[tuple[float, tuple[float, float]]]:
+        """Local maxima and their places, from those of a grid: the `MOST_MAXIMA` with most stops."""
+        from scipy import ndimage
+
+        fits = np.array([[self.fit(height, phase) for phase in self.phases] for height in self.heights])
+        around = np.pad(np.pad(fits, ((0, 0), (1, 1)), mode="wrap"), ((1, 1), (0, 0)), constant_values=-np.inf)
+        rows, columns = fits.shape
+        beside = [
+            around[1 + i : 1 + i + rows, 1 + j : 1 + j + columns] for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j
+        ]
+        level, number = ndimage.label(fits >= np.max(beside, axis=0), np.ones((3, 3)))
+        tops = [np.argwhere(level == one + 1)[0] for one in range(number)]  # of a plateau one place
+        tops.sort(key=lambda top: (-self._stops_on(fits, *top), -fits[tuple(top)]))
+        return [self._refined(float(self.heights[i]), float(self.phases[j])) for i, j in tops[:MOST_MAXIMA]]
+
+    def _stops_on(self, fits: FloatArray, row: int, column: int) -> int:
+        """As `stops`, on the grid."""
+        least = -STOPPED * self.roller.radius
+        rows = int((self.roller.large - self.roller.small) / (self.heights[1] - self.heights[0]))
+        around, half = np.roll(fits[row], -column), len(self.phases) // 2
+        ways = (
+            around[: half + 1],
+            around[half:],
+            fits[row : row + rows + 1, column],
+            fits[max(row - rows, 0) : row + 1, column],
+        )
+        return sum(bool(way.min() < least) for way in ways)
+
+    def _refined(self, height: float, phase: float) -> tuple[float, tuple[float, float]]:
+        best, step = (height, phase), np.array([self.heights[1] - self.heights[0], self.phases[1]])
+        fit = self.fit(*best)
+        for _ in range(6 if fit < FREE * self.roller.radius else 0):
+            for i in (-1.0, -0.5, 0.0, 0.5, 1.0):
+                for j in (-1.0, -0.5, 0.0, 0.5, 1.0):
+                    at = (best[0] + i * step[0], best[1] + j * step[1])
+                    if (i or j) and (found := self.fit(*at)) > fit:
+                        fit, best = found, at
+            step = 0.5 * step
+        return fit, best
+
+    def stops(self, at: tuple[float, float]) -> int:
+        """In how many of four directions, to both sides and along the axis, the cage stops a roller from a place."""
+        (height, phase), least = at, -STOPPED * self.roller.radius
+        length = self.roller.large - self.roller.small
+        return sum(
+            any(self.fit(height + share * along, phase + share * turn) < least for share in np.linspace(0.1, 1.0, 10))
+            for along, turn in ((0.0, 0.5 * self.pitch), (0.0, -0.5 * self.pitch), (length, 0.0), (-length, 0.0))
+        )
 
 
 def _clearance(points: FloatArray, height: float, phase: float, pitch: float, count: int, roller: Frustum) -> float:
@@ -256,7 +317,7 @@ def _clearance(points: FloatArray, height: float, phase: float, pitch: float, co
     close = np.abs(points[:, 1] * folded) < 1.2 * roller.radius
     folded, pocket, (_, radius, along) = folded[close], pocket[close], points[close].T
     placed = np.stack([radius * np.cos(folded), radius * np.sin(folded), along - height], axis=1)
-    least = np.full(count, 0.2 * roller.radius)
+    least = np.full(count, FREE * roller.radius)
     np.minimum.at(least, pocket.astype(int) % count, roller.depth(placed))
     return float(np.median(least))
 

@@ -55,14 +55,21 @@ class _Reader:
 
     def read(self) -> DrawnCage:
         """The cage with all faces that rollers reach: faces further away are left out only where plays are smaller."""
+        start = self._placed()
         for share in REACHES:
             self._reach_for(share)
-            cage = self._read()
+            if share < REACHES[-1] and not self._is_reached(start):
+                continue
+            place = self._settled(start)
+            kinds, kind_of = self._kinds(place)
+            cage = self._cage(place, [self._pocket(place, index) for index in kinds], kind_of)
             if max(play for pocket in cage.pockets for play in self._plays(pocket).values()) <= self.roller.reach:
                 break
         return cage
 
-    def _read(self) -> DrawnCage:
+    def _placed(self) -> Place:
+        """Where the cage lies, as far as its triangles tell."""
+        self._reach_for(REACHES[0])
         axis = axis_of(self.drawing)
         found = pockets_of(self.drawing, axis)
         if found != self.count:
@@ -78,9 +85,15 @@ class _Reader:
             0.25 * (geometry.large_end_diameter + geometry.small_end_diameter),
             math.tan(geometry.roller_half_angle),
         )
-        place = self._settled(place_of(self.drawing, axis, found, roller))
-        kinds, kind_of = self._kinds(place)
-        return self._cage(place, [self._pocket(place, index) for index in kinds], kind_of)
+        return place_of(self.drawing, axis, found, roller)
+
+    def _is_reached(self, place: Place) -> bool:
+        """Whether bars of both sides, and a wall at the large ends where it tells the place, are within reach."""
+        surfaces = self.surfaces.of_pocket(place, 0)
+        bars = all(any(name.startswith(bar) for name in surfaces) for bar in NAMES[:2])
+        return bars and (
+            self.roller_plane is not None or any(faces[0].part == "large_end" for faces in surfaces.values())
+        )
 
     # where the cage lies
 

@@ -67,6 +67,7 @@ if TYPE_CHECKING:
         settling as settling,
         spectrum as spectrum,
         uniform as uniform,
+        windowed as windowed,
     )
     from trbdyn.results.observables.uncertainty import (
         MeanError as MeanError,

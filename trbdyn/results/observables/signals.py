@@ -53,7 +53,10 @@ def uniform(time: ArrayLike, values: ArrayLike) -> tuple[float, NDArray[Any]]:
 
 
 def spectrum(time: ArrayLike, values: ArrayLike, segments: int = 1) -> tuple[Array, Array]:
-    """Power spectral density by Welch's method, with a Hann window and the mean removed.
+    """Power spectral density by Welch's method, with a Hann window and the mean removed, of the power of the whole signal.
+
+    A window weighs the ends of a signal less than its middle, so that single hits would count by where they lie: the density is
+    scaled to the mean square of the samples. A stationary signal it changes by per mille.
 
     Parameters
     ----------
@@ -76,6 +79,13 @@ def spectrum(time: ArrayLike, values: ArrayLike, segments: int = 1) -> tuple[Arr
     ValueError
         If there are fewer than eight samples in a segment.
     """
+    frequency, density, x = windowed(time, values, segments)
+    power = float(np.trapezoid(density, frequency))
+    return frequency, density * (float(np.var(x)) / power if power > 0.0 else 1.0)
+
+
+def windowed(time: ArrayLike, values: ArrayLike, segments: int = 1) -> tuple[Array, Array, NDArray[Any]]:
+    """As `spectrum`, but of the power that the window leaves, with the samples at even times: a line has its amplitude by it."""
     from scipy import signal
 
     interval, x = uniform(time, values)
@@ -87,7 +97,7 @@ def spectrum(time: ArrayLike, values: ArrayLike, segments: int = 1) -> tuple[Arr
         x, fs=1.0 / interval, window="hann", nperseg=length, detrend="constant", return_onesided=not two_sided
     )
     order = np.argsort(frequency)
-    return np.asarray(frequency[order], dtype=float), np.asarray(np.real(density[order]), dtype=float)
+    return np.asarray(frequency[order], dtype=float), np.asarray(np.real(density[order]), dtype=float), x
 
 
 FOLDED = 0.1
