@@ -116,7 +116,7 @@ def app(path: Path) -> None:
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         server, browser = Server(Path(folder) / "app"), browser_module().Browser(Path(folder), (1400, 900))
         try:
-            browser.go(server.address, "document.querySelector('[data-path=source]')")
+            browser.go(server.address_for(browser), "document.querySelector('[data-path=source]')")
             user = User(browser)
             user.click("tab.run")
             user.click("want.cage")
