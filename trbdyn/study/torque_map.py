@@ -253,10 +253,8 @@ def _shares(found: xarray.Dataset) -> Array:
     sums = dict.fromkeys(SOURCES, 0.0)
     for name, value in found.data_vars.items():
         part = str(name).removeprefix("torque_by_loss_")
-        if part == name or part in (
-            NOT_LOST,
-            BETWEEN,
-        ):  # what is stored, or lies between records, is no loss of a contact
+        # what is stored, or lies between records, is no loss of a contact
+        if part == name or part in (NOT_LOST, BETWEEN):
             continue
         kind = next(kind for kind in SOURCES if part.startswith(kind))
         sums[kind] += float(np.nan_to_num(value))
