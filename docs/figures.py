@@ -116,12 +116,16 @@ def app(path: Path) -> None:
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         server, browser = Server(Path(folder) / "app"), browser_module().Browser(Path(folder), (1400, 900))
         try:
-            browser.go(server.address_for(browser), "document.querySelector('[data-path=source]')")
+            browser.go(server.address_for(browser), "window.trbReady && document.querySelector('[data-path=source]')")
             user = User(browser)
+            user.choose("source", "30310 (ships")
+            user.type("scene.speed_rpm", "3000")
+            user.type("scene.axial_load", "4930")
+            user.says("inputs complete")
             user.click("tab.run")
-            user.click("want.cage")
+            user.type("run.revolutions", "20")
             user.click("run")
-            user.says("run done", 120.0)
+            browser.wait("document.querySelector('[data-path=said]').textContent.includes('done: ')", 240.0)
             user.click("tab.results")
             time.sleep(8.0)  # the 3-D view draws itself in a frame of its own
             browser.picture(path)
