@@ -91,12 +91,18 @@ class User:
         self.browser.click(*box)
 
     def choose(self, path: str, words: str) -> None:
-        """An entry of a list."""
-        self.click(path)
+        """An entry of a list. On a busy machine the list may still move when it is pressed: then it is opened again."""
         entry = f"[...document.querySelectorAll('.q-menu .q-item')].find((one) => one.textContent.includes({words!r}))"
-        self.browser.wait(f"{entry} && {entry}.getBoundingClientRect().height > 20")
-        self._press(entry)
-        self.browser.wait("!document.querySelector('.q-menu')")
+        chosen = f"document.querySelector('[data-path=\"{path}\"]')?.closest('.q-field')?.textContent.includes({words!r})"
+        for _ in range(4):
+            self.click(path)
+            self.browser.wait(f"{entry} && {entry}.getBoundingClientRect().height > 20")
+            time.sleep(0.4)  # the list opens with a movement
+            self._press(entry)
+            self.browser.wait("!document.querySelector('.q-menu')")
+            time.sleep(0.5)  # the page answers
+            if self.browser.js(f"Boolean({chosen})"):
+                return
 
     def type(self, path: str, text: str) -> None:
         self.actions += 1
