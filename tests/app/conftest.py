@@ -93,7 +93,9 @@ class User:
     def choose(self, path: str, words: str) -> None:
         """An entry of a list. On a busy machine the list may still move when it is pressed: then it is opened again."""
         entry = f"[...document.querySelectorAll('.q-menu .q-item')].find((one) => one.textContent.includes({words!r}))"
-        chosen = f"document.querySelector('[data-path=\"{path}\"]')?.closest('.q-field')?.textContent.includes({words!r})"
+        chosen = (
+            f"document.querySelector('[data-path=\"{path}\"]')?.closest('.q-field')?.textContent.includes({words!r})"
+        )
         for _ in range(4):
             self.click(path)
             self.browser.wait(f"{entry} && {entry}.getBoundingClientRect().height > 20")

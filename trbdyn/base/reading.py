@@ -52,9 +52,13 @@ def checked_file(path: object, kind: str, *, field: str = "path", hint: str = ""
     try:
         found = file.stat()
     except OSError as error:
-        raise FileError(f"{file}: {error.strerror or error}{hint}") from None
+        raise FileError(f"{file}: {_why(error)}{hint}") from None
     _check(file, found, kind)
     return file
+
+
+def _why(error: OSError) -> str:
+    return "there is no such file" if isinstance(error, FileNotFoundError) else error.strerror or str(error)
 
 
 def _check(file: Path, found: os.stat_result, kind: str) -> None:
@@ -80,7 +84,7 @@ def read_input(path: object, kind: str, *, field: str = "path", hint: str = "") 
     except FileError:
         raise
     except OSError as error:
-        raise FileError(f"{file}: {error.strerror or error}{hint}") from None
+        raise FileError(f"{file}: {_why(error)}{hint}") from None
     if len(data) > LARGEST[kind]:
         raise FileError(f"{file}: {kind} files up to {LARGEST[kind] >> 20} MB are read")
     return data

@@ -36,6 +36,8 @@ AFTER_JUMP: Final = 2.0
 """Turns after a jump of a load or a speed that belong to its piece."""
 LEAST_RECORDS: Final = 8
 """Records of the run in a piece below which its numbers there come from repetitions alone."""
+UNKNOWN_COST: Final = 1.0
+"""Time of a second of the bearing (s) where a result does not tell what it took: about real time."""
 FINER: Final = 0.1
 """Factor of tolerances that are those of 'reference' already."""
 DEARER: Final = 6.0
@@ -114,8 +116,9 @@ class Repeating:
 
     @property
     def cost_per_second(self) -> float:
-        """Time that a second of the bearing took (s)."""
-        return float(self.first.stats.get("stepping_s") or math.inf) / self.length
+        """Time that a second of the bearing took (s); where nobody measured it, `UNKNOWN_COST`."""
+        spent = self.first.stats.get("stepping_s") or self.first.stats.get("wall_s")
+        return float(spent) / self.length if spent else UNKNOWN_COST
 
     def sample(self, piece: Piece) -> Sample:
         """A piece with the numbers of the run itself, if it has records enough there."""
