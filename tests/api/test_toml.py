@@ -189,7 +189,6 @@ class TestMistakes:
                 "radial_load = { times = [0, 0], values = [1, 2] }",
                 "scene.radial_load.times[1] = 0.0 : must be later",
             ),
-            ("", "radial_load = 30e3", "scene.radial_load = 30000.0 : must be < 21"),
             ("", "[lubricant]\noil = 'vg10'", "lubricant.oil = 'vg10' : must be one of 'vg100', 'fva3'"),
             (
                 "",
@@ -239,7 +238,7 @@ class TestMistakes:
         with pytest.raises(FileError, match=r"not a TOML file.*line 1"):
             load_case(broken)
         broken.write_bytes(b"\xff\xfe")
-        with pytest.raises(FileError, match="not a TOML file"):
+        with pytest.raises(FileError, match="is no text in UTF-8"):
             load_case(broken)
 
 

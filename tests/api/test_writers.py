@@ -118,7 +118,8 @@ WRITERS: dict[str, tuple[str, Callable[..., Any]]] = {
 }
 RUNS = {name for name in WRITERS if name.endswith("Simulation.run")}
 """Runs have tests of their own for a full disk: tests/restart and tests/api/test_results.py."""
-NEEDS_A_PROGRAM = {"trbdyn.reporting.save_pdf"}
+NEEDS_A_PROGRAM = {"trbdyn.reporting.save_pdf", "trbdyn.fmi.export.write_fmu", "trbdyn.run.rexs.write_rexs"}
+"""Or a file of their own to begin with: tests/physics/test_fmu.py, tests/api/test_rexs.py."""
 FOLDERS = {
     f"{STUDY}{name}"
     for name in (
@@ -134,6 +135,7 @@ FOLDERS = {
 }
 """These own a folder, in which every file has the fingerprint of its case in its name."""
 READERS = {
+    "trbdyn.run.rexs.read_rexs",
     "trbdyn.cage.modes.CageModes.load",
     "trbdyn.results.assembly.load",
     "trbdyn.results.file_source.assembly_in",
@@ -223,6 +225,7 @@ MAY_WRITE = {
     "study/index.py": "adds lines to the index of its folder",
     "plot/style.py": "fills memory",
     "reporting/page.py": "fills memory",
+    "fmi/export.py": "fills a folder of its own, which is then gone",
 }
 
 

@@ -168,7 +168,7 @@ def test_units_and_arguments_that_cannot_be_are_refused(tmp_path: Path) -> None:
     (tmp_path / "e.csv").write_text("nothing here\n", encoding="utf-8")
     with pytest.raises(trb.FileError, match="no line of two numbers"):
         trb.read_trace(tmp_path / "e.csv", LENGTH)
-    with pytest.raises(trb.FileError, match="No such file"):
+    with pytest.raises(trb.FileError, match="no such file"):
         trb.read_trace(tmp_path / "none.csv", LENGTH)
 
 

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from trbdyn.base.expected import expect
-from trbdyn.base.own_files import output_path
-from trbdyn.errors import FileError, InputError, TrbError
+from trbdyn.base.own_files import output_path, write_whole
+from trbdyn.errors import InputError, TrbError
 from trbdyn.fmi.unit import BearingUnit, Kind
 from trbdyn.model.assembly import Subject
 from trbdyn.model.scene import Scene
@@ -97,10 +97,7 @@ def write_fmu(
         script.write_text(SCRIPT.format(name=name, title=scene.title.replace('"', "'")), encoding="utf-8")
         case.write_text(json.dumps({"scene": scene.to_dict(), "ring": ring, "accuracy": accuracy}), encoding="utf-8")
         made = FmuBuilder.build_FMU(script, dest=Path(folder, "made"), project_files=[case])
-        try:
-            target.write_bytes(made.read_bytes())
-        except OSError as error:
-            raise FileError(f"{target}: the file cannot be written: {error.strerror or error}") from error
+        write_whole(target, made.read_bytes(), overwrite=overwrite, endings=(".fmu",))
     return target
 
 
