@@ -209,12 +209,21 @@ class Case:
 
 
 STORED_LAW = "zhou_hoeprich"
-"""Law of rolling resistance with which the states were stored; they are compared with cores that had no other."""
+"""Law of rolling resistance with which the states were stored, beside the rib's film and friction of then; they are compared with
+cores that had no other.
+"""
 
 
 def scene_of(definition: CaseDefinition) -> Scene:
     """The scene of a case, with 8 Gauss nodes along each contact."""
-    standard = Effects.standard().replace(rolling_law=STORED_LAW, thermal_law="gupta")
+    standard = Effects.standard().replace(
+        rolling_law=STORED_LAW,
+        rolling_load="slices",
+        supply=1.0,
+        thermal_law="gupta",
+        rib_film="pe",
+        friction=Effects.paper().friction,
+    )
     effects = {"paper": Effects.paper(), "standard": standard}[definition.effects]
     bearing = cases.rig_30310()
     if definition.diameter_range > 0.0:

@@ -355,10 +355,12 @@ COMMANDS: dict[str, tuple[list[str], list[str]]] = {
     "torque": (["rig_30310", "--speeds", "100", "-o", "a"], ["a.nc", "a.png"]),
     "thermal": (["rig_30310", "--heat", "outer_ring_to_surroundings=3", "-o", "a.png"], ["a.png"]),
     "new": (["a.toml"], ["a.toml"]),
+    "export": (["run.h5", "a.csv"], ["a.csv"]),
+    "fmu": (["rig_30310", "-o", "a.fmu"], ["a.fmu"]),
 }
 """Words of each command, and the files that it would write."""
 WRITE_A_STUDY = {"sweep", "ensemble"}
-ONLY_PRINT = {"info", "cases", "rating", "check"}
+ONLY_PRINT = {"info", "cases", "rating", "check", "fit", "spectrum", "stiffness"}
 OWNS_A_FOLDER = {"app"}
 
 

@@ -61,7 +61,8 @@ def test_intervals_make_the_run(runs: dict[float, Result], every: float) -> None
     """Extremes and numbers of impacts to the last bit, integrals to rounding; times lie in their intervals."""
     result = runs[every]
     whole, joined, time = result.peaks, result.window().peaks, result.time
-    for name, how in ((row[0], row[5]) for row in trb._core.peak_table() if row[0] in whole):
+    kept = {field.name for field in result.fields}
+    for name, how in ((row[0], row[5]) for row in trb._core.peak_table() if row[0] in kept):
         if how == "time":
             start, end = time[:-1, None], time[1:, None]
             rows = result[name].reshape(time.size, -1)[1:]
@@ -208,11 +209,11 @@ def test_files_hold_the_peaks(runs: dict[float, Result], tmp_path: Path) -> None
     loaded = trb.load(tmp_path / "run.h5")
     for found in (result, loaded):
         assert found.groups == ("time", "peaks")
-        for name in runs[1e-3].peaks:
+        kept = {field.name: field for field in result.fields}
+        for name in set(runs[1e-3].peaks) & set(kept):
             np.testing.assert_array_equal(found.peaks[name], runs[1e-3].peaks[name])
             # a file keeps seven digits of them, and nine of their times
-            field = next(field for field in result.fields if field.name == name)
-            np.testing.assert_array_equal(found[name], as_kept(field, runs[1e-3][name]))
+            np.testing.assert_array_equal(found[name], as_kept(kept[name], runs[1e-3][name]))
     assert {field.unit for field in loaded.fields if field.name.endswith("_time")} == {"s"}
     with pytest.raises(trb.InputError, match="pocket_force_peak"):
         loaded.peaks["pocket_force_peek"]
@@ -252,8 +253,9 @@ def test_what_users_read_after_a_run_is_at_its_end(kit: SimpleNamespace) -> None
     assert sim._core.time > end
     assert sim.time == sim.state.time == result.final_time == result.time[-1] == end
     record = sim.record()
+    kept = {field.name for field in result.fields}
     for name in record:
-        if not name.startswith("housing_"):  # which this bearing does not have
+        if name in kept:
             np.testing.assert_array_equal(record[name], result[name][-1], err_msg=name)
     np.testing.assert_array_equal(result.final_state, sim.state.vector)
     np.testing.assert_array_equal(sim.view()["cage_x"], sim.view(sim.state.vector)["cage_x"])

@@ -105,12 +105,12 @@ def test_toml_that_python_does_not_read(tmp_path: Path, text: str) -> None:
     path = tmp_path / "case.toml"
     path.write_text(text, encoding="latin-1")
     for read in (load_case, study.load_study):
-        with pytest.raises(FileError, match="not a TOML file"):
+        with pytest.raises(FileError, match="not a TOML file|no text in UTF-8"):
             read(path)
 
 
 def test_endless_files_are_not_read() -> None:
-    with pytest.raises(FileError, match="larger than 16 MB"):
+    with pytest.raises(FileError, match="is no regular file"):
         load_case("/dev/zero")
 
 
