@@ -105,7 +105,7 @@ def test_toml_that_python_does_not_read(tmp_path: Path, text: str) -> None:
     path = tmp_path / "case.toml"
     path.write_text(text, encoding="latin-1")
     for read in (load_case, study.load_study):
-        with pytest.raises(FileError, match="not a TOML file|no text in UTF-8"):
+        with pytest.raises(FileError, match=r"not a TOML file|no text in UTF-8"):
             read(path)
 
 
