@@ -111,7 +111,7 @@ def unpacked_limit(size: int) -> int:
     """Most bytes that a dataset of an HDF5 file of `size` bytes takes in memory: records are packed to a tenth at best, and a
     single field can be constant.
     """
-    return (32 << 20) + 64 * size
+    return (96 << 20) + 64 * size
 
 
 _TEXTS: Final = re.compile(

@@ -287,6 +287,12 @@ class Scene(TurningRings, Model):
         return angle_turned(self.speed_rpm, self.start.time, time)
 
     @property
+    def modes_from_file(self) -> bool:
+        """Whether the modes of an elastic cage come from a file of their own: what reads a result does not open it."""
+        elastic = self.elastic_cage
+        return elastic is not None and (elastic.file is not None or self.bearing.cage.drawing is not None)
+
+    @property
     def running_plays(self) -> tuple[float, float]:
         """Radial and circumferential play of the pocket that most rollers have (m): Cpr and Cpc of the running bearing."""
         bearing, pocket = self.bearing, self.bearing.pocket

@@ -101,11 +101,7 @@ class Repeating:
             return "a bearing on a shaft is repeated with the others, by the result of all of them, and not from seats alone"
         if not self.length > 0.0:
             return "its records are of one instant"
-        elastic = [part.scene.elastic_cage for part in self.parts.values()]
-        if any(one is not None and one.file for one in elastic) or any(
-            one is not None and part.scene.bearing.cage.drawing is not None
-            for one, part in zip(elastic, self.parts.values(), strict=True)
-        ):
+        if any(part.scene.modes_from_file for part in self.parts.values()):
             return "the modes of its cage come from another file, which the check of a result does not open"
         return ""
 
