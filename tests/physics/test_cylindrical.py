@@ -160,7 +160,7 @@ def test_it_rolls_at_the_kinematic_speed(flanges: str) -> None:
 def test_energy_without_friction() -> None:
     """Kinetic and elastic energy and the works are conserved where nothing loses any."""
     quiet = trb.Effects.frictionless().replace(gravity=False, bodies="rollers")
-    sim = trb.Simulation(scene("NJ", effects=quiet, misalignment_x=2e-4), accuracy="reference")
+    sim = trb.Simulation(scene("NJ", effects=quiet, misalignment_x=2e-4), accuracy="reference", integrator="bdf")
     result = sim.run(duration=4e-3, save_every=1e-4)
     energy = result["kinetic_energy"] + result["elastic_energy"] - result["work_shaft"] - result["work_ring"]
     assert np.ptp(energy) < 1e-5 * float(np.abs(result["elastic_energy"]).max())
@@ -201,7 +201,7 @@ def test_a_free_ring_that_no_rib_holds() -> None:
     place = trb.Simulation(hung).run(duration=0.04)["ring_position"][:, 2]
     sink = 2.0 * 9.80665 / 2e5
     assert abs(float(place[0])) < 1e-9
-    assert -3.0 * sink < float(place.min()) < -0.3 * sink
+    assert -3.0 * sink < float(place.min()) < -0.2 * sink
     load = trb.History.step((2e-3, 6e-3), (500.0, 0.0, 500.0))
     assert trb.Simulation(scene("NJ", axial_load=load, ring="free", ring_body=body)).run(duration=8e-3).success
 
@@ -370,7 +370,7 @@ def test_a_rib_that_is_not_there_carries_no_film() -> None:
         assert np.isnan(result[f"{rib}_film_parameter_min"]).all()
     summary = result.summary()
     assert "film_parameter_rib" not in summary
-    assert not np.isfinite(summary["film_parameter_rib_min"] or math.nan)
+    assert "film_parameter_rib_min" not in summary
     tapered = trb.Simulation(trb.Scene(trb.cases.rig_30310(), speed_rpm=3000.0, axial_load=4930.0))
     with pytest.raises(trb.InputError, match="does not have: outer ring's rib"):
         tapered.run(duration=1e-3, until={"outer_rib_load_mean": 0.1})
