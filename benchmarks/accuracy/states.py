@@ -302,6 +302,7 @@ def load_case(name: str, path: Path = FILE) -> Case:
     with np.load(path) as data:
         scene = json.loads(str(data[f"{name}_scene"]))
         scene["effects"].setdefault("rolling_law", STORED_LAW)
+        scene["effects"]["friction"].setdefault("rib_boundary_limit", 0.1)
         scene["effects"].setdefault("thermal_law", "gupta")
         scene["effects"].setdefault("rolling_load", "slices")
         scene["effects"].setdefault("supply", 1.0)

@@ -53,7 +53,7 @@ def test_a_profile_is_found_back_from_a_rough_tilted_trace_with_spikes(tmp_path:
     edge = np.abs(trace.stations) < HALF - 0.05e-3  # within the cut-off of the ends steep drops are rounded
     assert np.all(np.abs(error[edge]) < 80e-9 + 0.03 * trace.drops[edge])
     assert trace.angle_deg == pytest.approx(1.3, abs=3e-4)
-    assert 28 <= np.count_nonzero(trace.outlier) <= 40
+    assert 28 <= np.count_nonzero(trace.outlier) <= 45
     assert "outliers at" in str(trace)
     assert trace.roughness == pytest.approx(50e-9 * np.sqrt(3.0), rel=0.15)
     assert trace.left_out == pytest.approx(80, abs=4)
@@ -256,7 +256,9 @@ axial_load = 4930
     # the constants of laws that a trace does not use stay those of the case
     traced, own = trb.Profile.from_trace(file, LENGTH, cutoff=0.4e-3), bearing.roller.profile
     assert own.to_dict() == traced.to_dict() | {"a_p": own.a_p}
-    assert bearing.cup_profile == trb.Profile.from_trace(file, LENGTH, large_end="first")
+    cup, turned = bearing.cup_profile, trb.Profile.from_trace(file, LENGTH, large_end="first")
+    assert cup is not None
+    assert cup.to_dict() == turned.to_dict() | {"a_p": cup.a_p}
     assert trb.Simulation(trb.load_case(case)[0]).contacts()["raceway_pressure"].max() > 1e8
     case.write_text(case.read_text(encoding="utf-8").replace("large_end", "large_ends"), encoding="utf-8")
     with pytest.raises(trb.InputError, match=r"bearing\.cup_profile\.large_ends"):

@@ -203,6 +203,7 @@ OF_CYLINDERS = tuple(
     for name in OF_RIBS
     if (rib, name) != ("front_rib", "load")
 )
+PARTLY = ("inner_torque_rolling", "outer_traction", "inner_traction", "outer_torque", "inner_torque", "power_rolling")
 AT_REST = ("housing_position", "housing_tilt", "housing_velocity", "housing_angular_velocity")
 
 
@@ -250,8 +251,8 @@ def test_every_field_computed_a_second_time(kit: SimpleNamespace, speed: float, 
         # speeds in denominators are guarded
         guarded = ("power_traction", "power_rib", "power_front", "inner_torque_", "outer_slide", "inner_slide")
         close = 1e-6 if name.startswith(guarded) else 1e-9
-        # nodes that hardly touch: the default law has resistance there, whose sum differs by up to a thousandth
-        close = 2e-3 if name == "inner_torque_rolling" else close
+        # cells that touch in a part of their length only have rolling resistance, which the numbers of single nodes leave out
+        close = 2e-3 if name in PARTLY else close
         np.testing.assert_allclose(record[name], values, rtol=close, atol=close * size, err_msg=name)
     total = sum(float(record[name]) for name in TORQUES)
     assert total == pytest.approx(float(record["inner_torque"]), rel=1e-9)

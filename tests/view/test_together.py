@@ -73,7 +73,11 @@ def test_the_report_has_the_shaft_and_each_bearing(pair: AssemblyResult, browser
         browser.open(path)
         assert browser.js("document.documentElement.scrollWidth") <= width
     heads = browser.js("[...document.querySelectorAll('h1, h2')].map((head) => head.textContent)")
-    assert heads[:3] == ["Report: left, right on one shaft", "The bearings side by side", "Lives"]
+    assert [one for one in heads if one in ("The bearings side by side", "Lives")] == [
+        "The bearings side by side",
+        "Lives",
+    ]
+    assert heads[0] == "Report: left, right on one shaft"
     assert [head for head in heads if head.startswith("Bearing ")] == ["Bearing left", "Bearing right"]
     # two of the shaft; section, pocket and locus of each bearing
     assert browser.js("document.querySelectorAll('img').length") == 8
