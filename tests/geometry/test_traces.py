@@ -43,7 +43,9 @@ def written(path: Path, x: np.ndarray, z: np.ndarray, *, head: str = "X [mm];Z [
     return path
 
 
-@pytest.mark.parametrize("profile", [trb.Profile.iso(a_p=0.00035), trb.Profile.logarithmic(), trb.Profile.crowned(20.0)])
+@pytest.mark.parametrize(
+    "profile", [trb.Profile.iso(a_p=0.00035), trb.Profile.logarithmic(), trb.Profile.crowned(20.0)]
+)
 def test_a_profile_is_found_back_from_a_rough_tilted_trace_with_spikes(tmp_path: Path, profile: trb.Profile) -> None:
     x, z = rough(profile)
     trace = trb.read_trace(written(tmp_path / "t.csv", x + 12e-3, z), LENGTH)
