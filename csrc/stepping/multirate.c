@@ -13,6 +13,9 @@ static const double gamma_change = 0.3;
 static const double swing_share = 0.5;
 static const int    swings[] = {TRB_ROLLER_skew, TRB_ROLLER_tilt, TRB_ROLLER_omega_n, TRB_ROLLER_omega_t};
 
+/* The larger of two errors; one that is no number stays, whatever follows it. */
+static double larger(double a, double b) { return isnan(a) || b <= a ? a : b; }
+
 static void put_state(const trb_multirate *s, const trb_mover *mover, const double *from)
 {
   memcpy(s->y + mover->first, from, (size_t)mover->course.main * sizeof *from);
@@ -141,7 +144,7 @@ static double measure(trb_integrator *it, const trb_team *team, double end, doub
     const int  n = b->course.main;
     for (int i = 0; i < n; i++) packed[i] = gamma * b->flow[i] - (b->e[i] + per_l1 * b->p[1][i]);
     b->left = sqrt(trb_weighted_product(n, packed, packed, weight) / n);
-    if (!(b->left <= off)) off = b->left;
+    off = larger(off, b->left);
     packed += n, weight += n;
   }
   return off;
@@ -155,8 +158,7 @@ static double add(trb_multirate *s, const trb_team *team)
   for (int k = 0; k < trb_team_size(team); k++) {
     trb_mover   *b = trb_team_mover(s, team, k);
     const int    n = b->course.main;
-    const double by = sqrt(trb_weighted_product(n, packed, packed, weight) / n);
-    if (!(by <= change)) change = by;
+    change = larger(change, sqrt(trb_weighted_product(n, packed, packed, weight) / n));
     for (int i = 0; i < n; i++) b->e[i] += packed[i];
     packed += n, weight += n;
   }
@@ -222,8 +224,8 @@ static double error_of(trb_multirate *s, const trb_team *team, double per)
     double     e[TRB_COURSE_ROOM];
     memcpy(e, b->e, (size_t)n * sizeof *e);
     for (size_t i = 0; i < sizeof swings / sizeof *swings && team->with_hub && k < team->n; i++) e[swings[i]] *= swing_share;
-    const double error = per * sqrt(trb_weighted_product(n, e, e, weight) / n);
-    if (!(error <= largest)) largest = error;
+    largest = larger(largest, per * sqrt(trb_weighted_product(n, e, e, weight) / n));
+    for (int i = n; i < b->course.n; i++) largest += 0.0 * b->e[i]; /* an integral that is no number any more */
     for (int i = 0; i < n; i++) s->error[b->first + i] = per * b->e[i];
     weight += n;
   }

@@ -303,6 +303,22 @@ def sim() -> trb.Simulation:
     return trb.Simulation(paper_30310())
 
 
+@pytest.mark.parametrize("integrator", ["bdf", "multirate"])
+def test_numbers_that_are_too_large_for_a_step_never_enter_the_state(integrator: str) -> None:
+    """A norm that is no number must not be hidden by the next body's."""
+    sim = trb.Simulation(paper_30310(3000.0, 4930.0), integrator=integrator)
+    good = sim.state.vector
+    for entry in range(0, good.size, 7):
+        for value in (2.855924064778409e21, -1e150, 1e300):
+            try:
+                sim.set_state(np.where(np.arange(good.size) == entry, value, good), 0.0)
+                for _ in range(3):
+                    sim.step()
+            except (InputError, StepError) as error:
+                say(error)
+            assert np.isfinite(sim.state.vector).all(), (entry, value)
+
+
 @COMMON
 @given(data=st.data())
 def test_any_state_vector(sim: trb.Simulation, data: st.DataObject) -> None:
