@@ -93,7 +93,7 @@ ifdef SMOKE
 	  --json build/bench/NAME.json >build/bench/NAME.log 2>&1 || { echo "NAME fails:"; tail -20 build/bench/NAME.log; exit 1; }; \
 	  echo "NAME: $$(($$(date +%s) - began)) s"'
 	@rm -rf build/bench/paper
-	@$(PY) benchmarks/paper --quick --quiet -o build/bench/paper >build/bench/paper.log 2>&1 || { tail -20 build/bench/paper.log; exit 1; }
+	@$(PY) benchmarks/paper --smoke --quiet -o build/bench/paper >build/bench/paper.log 2>&1 || { tail -20 build/bench/paper.log; exit 1; }
 else
 	@set -e; for name in $(BENCH); do echo "== $$name"; \
 	  $(PY) benchmarks/$$name.py $(if $(QUICK),--quick) --json build/bench/$$name.json; done

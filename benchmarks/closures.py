@@ -139,7 +139,7 @@ def main(arguments: Sequence[str] | None = None) -> common.Report:
     print("\n" + text)
     report.readme = results(report)
     if options.write:
-        (common.HERE / "closures.md").write_text(text, encoding="utf-8")
+        (common.HERE / "closures.md").write_text(report.stamped(text), encoding="utf-8")
         print("wrote benchmarks/closures.md")
     if options.write and not options.no_picture:
         common.save_picture(draw(report), "closures")

@@ -23,6 +23,7 @@ from __future__ import annotations
 
 import argparse
 import datetime
+import hashlib
 import json
 import math
 import os
@@ -92,6 +93,30 @@ def revision() -> str | None:
         return None
 
 
+def defaults_mark() -> str:
+    """Eight digits that change with the defaults which figures depend on: effects, tolerances, integrator. What is off is left
+    out, so that a new effect that is off changes nothing.
+    """
+    import trbdyn as trb
+    from trbdyn.run.options import ACCURACY, IMPACT_SHARE, RINGS_SHARE, RunOptions
+
+    parts = {
+        "standard": trb.Effects().to_dict(),
+        "paper": trb.Effects.paper().to_dict(),
+        "accuracy": {name: preset.to_dict() for name, preset in ACCURACY.items()},
+        "shares": [RINGS_SHARE, IMPACT_SHARE],
+        "run": RunOptions(revolutions=1.0).to_dict(),
+        "integrator": trb.Simulation(trb.cases.scene_30310(3000.0, 4930.0)).options.integrator,
+    }
+    return hashlib.sha256(json.dumps(_what_is_on(parts), sort_keys=True).encode()).hexdigest()[:8]
+
+
+def _what_is_on(value: Any) -> Any:
+    if not isinstance(value, Mapping):
+        return value
+    return {name: _what_is_on(item) for name, item in value.items() if item not in (None, False, 0.0, "off", {}, [])}
+
+
 def _git(*arguments: str) -> str:
     done = subprocess.run(["git", "-C", str(HERE), *arguments], capture_output=True, text=True, check=True, timeout=20)
     return done.stdout.strip()
@@ -115,6 +140,7 @@ def machine() -> dict[str, Any]:
         "scipy": scipy.__version__,
         "trbdyn": trbdyn.__version__,
         "revision": revision(),
+        "defaults": defaults_mark(),
         "sundials": _core.sundials_version(),
         "instruction_sets": _core.instruction_sets(),
     }
@@ -192,6 +218,11 @@ class Report:
         )
         return out
 
+    def stamped(self, page: str) -> str:
+        """A page of its own, with when and where it was measured below its title."""
+        title, _, rest = page.partition("\n")
+        return f"{title}\n\n{_stamp(self.to_dict())}\n{rest}"
+
     def finish(self) -> dict[str, Any]:
         """Write the JSON file and the part of the README that were asked for; say where everything is."""
         out = self.to_dict()
@@ -264,7 +295,9 @@ def _stamp(found: Mapping[str, Any]) -> str:
     where = found["machine"]
     cores = f"{where['processor']['name']}, {where['cores']} cores, load {where['load'][0]:g}"
     quick = ", with --quick" if found["quick"] else ""
-    return f"Measured {found['date'][:10]}, trbdyn {where['trbdyn']}, revision {where['revision'] or 'unknown'}{quick}; {cores}."
+    made = f", defaults {where['defaults']}" if "defaults" in where else ""
+    core = f"trbdyn {where['trbdyn']}, revision {where['revision'] or 'unknown'}{made}{quick}"
+    return f"Measured {found['date'][:10]}, {core}; {cores}."
 
 
 def write_readme(name: str, text: str, path: Path = HERE / "README.md") -> None:

@@ -16,9 +16,9 @@ from tqdm import tqdm
 
 from paper.figures import draw_all, movable_limits
 from paper.point_numbers import Runs, read_run
-from paper.points import STARTS, Point, points
+from paper.points import DIRECTION, STARTS, Inputs, Point, points
 from paper.settle import Plan, PointTask, is_done, is_there, run_point
-from paper.statements import judge_all, markdown
+from paper.statements import NAMED, by_inputs, judge_all, markdown
 from trbdyn import __version__, plot
 from trbdyn.base.own_files import folder_path
 from trbdyn.cli.outcome import DONE, FAILED, Parser, let_any_name_be_printed, run_command
@@ -28,7 +28,12 @@ from trbdyn.results.summary import clean, write_json
 from trbdyn.study.executors import execute
 from trbdyn.study.work import said
 
-SCHEMA: Final = "trbdyn-paper-1"
+SCHEMA: Final = "trbdyn-paper-2"
+SHORT: Final = (
+    *(Inputs(direction) for direction in (0.0, 90.0, 180.0, -90.0)),
+    *(Inputs(180.0, scatter) for scatter in (0.2e-6, 1e-6)),
+)
+"""Directions and scatters of ``--quick``."""
 POINTS, FIGURES, NUMBERS, TABLE = "points", "figures", "paper.json", "statements.md"
 
 
@@ -53,7 +58,28 @@ def parser() -> argparse.ArgumentParser:
     paper.add_argument(
         "--seeds", nargs="+", type=int, default=[0], metavar="N", help="seeds of spacing and scatter (default: 0)"
     )
-    paper.add_argument("--quick", action="store_true", help="a check of everything in a minute: nothing settles")
+    paper.add_argument(
+        "--directions",
+        nargs="+",
+        type=float,
+        default=[DIRECTION],
+        metavar="DEG",
+        help="directions of the radial load from +x towards +y; gravity acts along -y (default: 90)",
+    )
+    paper.add_argument(
+        "--scatters",
+        nargs="+",
+        type=float,
+        default=[0.0],
+        metavar="UM",
+        help="widths of the range of roller diameters in um (default: 0)",
+    )
+    paper.add_argument(
+        "--quick",
+        action="store_true",
+        help="the statements from equal spacing with four directions and three scatters, 1 s of bearing time each",
+    )
+    paper.add_argument("--smoke", action="store_true", help="a check of everything in a minute: nothing settles")
     paper.add_argument("--min-time", type=float, metavar="S", help="shortest bearing time before the statistics")
     paper.add_argument("--max-time", type=float, metavar="S", help="longest bearing time before the statistics")
     paper.add_argument(
@@ -90,7 +116,7 @@ def run_paper(options: argparse.Namespace) -> int:
     if not all(0 <= seed < 2**63 for seed in options.seeds):
         raise InputError.of("seeds", options.seeds, "must be whole numbers from 0 on, of less than 64 bits")
     plan = _plan(options)
-    chosen = points(options.points, options.starts or STARTS, options.seeds)
+    chosen = _chosen(options)
     failures: dict[str, str] = {}
     if not options.report:
         failures = run_points(chosen, folder, plan, options.workers, resume=options.resume, progress=not options.quiet)
@@ -108,8 +134,16 @@ def run_paper(options: argparse.Namespace) -> int:
     return FAILED if failures else DONE
 
 
+def _chosen(options: argparse.Namespace) -> tuple[Point, ...]:
+    """The points that the options ask for."""
+    asked = [Inputs(direction, 1e-6 * scatter) for direction in options.directions for scatter in options.scatters]
+    if options.quick and asked == [Inputs()]:
+        return points(options.points, options.starts or STARTS[:1], options.seeds, SHORT)
+    return points(options.points, options.starts or STARTS, options.seeds, asked)
+
+
 def _plan(options: argparse.Namespace) -> Plan:
-    plan = Plan.quick() if options.quick else Plan()
+    plan = Plan.smoke() if options.smoke else Plan.quick() if options.quick else Plan()
     if options.max_time is not None:
         plan = replace(plan, most_time=options.max_time, most_time_combined=options.max_time)
         plan = replace(
@@ -212,11 +246,13 @@ def report(runs: Runs, folder: Path, plan: Plan, failures: dict[str, str], early
         If something cannot be written.
     """
     pictures = plot.make_folder(folder / FIGURES)
+    sets = {inputs: judge_all(runs.within(inputs)) for inputs in runs.inputs}
+    every, runs = runs, runs.within(NAMED if NAMED in sets and Inputs() not in sets else Inputs())
     limits = movable_limits(runs)
     judged = judge_all(runs, limits)
     draw_all(runs, pictures, limits)
     then = [] if early is None else judge_all(early)
-    table = markdown(judged, then)
+    table = markdown(judged, then) + (f"\n{by_inputs(sets)}" if len(sets) > 1 else "")
     movable = {
         name: {"min": float(found.distance.min()), "max": float(found.distance.max())}
         for name, found in (("equal", limits.equal), ("free", limits.free))
@@ -227,10 +263,11 @@ def report(runs: Runs, folder: Path, plan: Plan, failures: dict[str, str], early
         "written": datetime.now(UTC).isoformat(timespec="seconds"),
         "plan": asdict(plan),
         "assumptions": "cases.rig_30310, VG100 at 60 C, Effects.paper() with 8 Gauss nodes a contact, the same for all points",
-        "points": {run.point.name: run.numbers for run in runs.all},
+        "points": {run.point.name: run.numbers for run in every.all},
         "failed": failures,
         "movable_over_cpr": movable,
         "statements": [entry.to_dict() for entry in judged],
+        "statements_by_inputs": {inputs.name: [entry.to_dict() for entry in found] for inputs, found in sets.items()},
         "statements_from_half_a_second_to_one": [entry.to_dict() for entry in then],
     }
     write_json(json.loads(json.dumps(clean(values))), folder / NUMBERS, overwrite=True)

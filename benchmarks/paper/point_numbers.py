@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from paper.files import History, read_about, read_history
 from paper.growth import growth_of_history
-from paper.points import Condition, Point, StartKind
+from paper.points import FIGURES, Condition, Inputs, Point, StartKind
 from trbdyn.errors import FileError
 from trbdyn.results import observables
 from trbdyn.results.assembly import load
@@ -217,6 +217,29 @@ class Runs:
         order = {"equal": 0, "unequal": 1, "whirl": 2}
         found: set[StartKind] = {run.point.start for run in self.all}
         return tuple(sorted(found, key=order.__getitem__))
+
+    @property
+    def inputs(self) -> tuple[Inputs, ...]:
+        """Directions and scatters that were run under combined load."""
+        return tuple(sorted({Inputs(c.direction_deg, c.scatter) for c in self._conditions if c.radial_load}))
+
+    @property
+    def _conditions(self) -> set[Condition]:
+        return {run.point.condition for run in self.all}
+
+    def within(self, inputs: Inputs) -> Runs:
+        """Runs with these inputs, under the names that the figures have for their conditions; and, unless that is the scatter
+        of all, those with the scatter of the paper's Fig. 15.
+        """
+        scattered, kept = FIGURES["15"][-1], []
+        for run in self.all:
+            condition = run.point.condition
+            base = condition.within(Inputs())
+            if condition == base.within(inputs):
+                kept.append(replace(run, point=replace(run.point, condition=base)))
+            elif condition == scattered:
+                kept.append(run)
+        return Runs(kept)
 
     def of(self, condition: Condition, start: StartKind) -> list[Run]:
         """Every seed of a condition and a start."""

@@ -19,6 +19,8 @@ STARTS: Final[tuple[StartKind, ...]] = ("equal", "unequal", "whirl")
 WHIRL_ECCENTRICITY: Final = 0.9
 SCATTER: Final = 1e-6
 """Width of the range of roller diameters (m) where the paper has scatter."""
+DIRECTION: Final = 90.0
+"""Direction of the radial load in the figures (deg): loaded zone on top. The paper does not give it."""
 
 GAUSS_NODES: Final = 8
 
@@ -29,6 +31,28 @@ def effects() -> Effects:
     At a fixed interference the load is 0.19 % from that of very many slices, with 20 uniform slices 0.46 %, at half the cost.
     """
     return Effects.paper().replace(quadrature="gauss", n_slices=GAUSS_NODES)
+
+
+@dataclass(frozen=True, order=True)
+class Inputs:
+    """Two inputs that the paper leaves open.
+
+    Attributes
+    ----------
+    direction_deg : float
+        Direction of the radial load on the inner ring from +x towards +y (deg). The ring turns from +x towards +y and gravity
+        acts along -y: at 90 the loaded zone is on top, at 180 it is where rollers descend, at 0 where they rise.
+    scatter : float
+        Width of the range of roller diameters (m).
+    """
+
+    direction_deg: float = DIRECTION
+    scatter: float = 0.0
+
+    @property
+    def name(self) -> str:
+        """For instance ``180 deg, 0.2 um``."""
+        return f"{self.direction_deg:g} deg, {1e6 * self.scatter:g} um"
 
 
 @dataclass(frozen=True, order=True)
@@ -43,15 +67,15 @@ class Condition:
         Loads on the inner ring (N).
     direction_deg : float
         Direction of the radial load on the inner ring from +x towards +y (deg); 90: loaded zone on top.
-    scatter : bool
-        Roller diameters scatter over 1 um.
+    scatter : float
+        Width of the range of roller diameters (m).
     """
 
     speed_rpm: float
     axial_load: float
     radial_load: float = 0.0
-    direction_deg: float = 90.0
-    scatter: bool = False
+    direction_deg: float = DIRECTION
+    scatter: float = 0.0
 
     @property
     def name(self) -> str:
@@ -59,16 +83,23 @@ class Condition:
         parts = [f"{self.speed_rpm:g}rpm", f"{self.axial_load:g}N"]
         if self.radial_load:
             parts.append(f"{self.radial_load:g}N")
-        if self.radial_load and self.direction_deg != 90.0:
+        if self.radial_load and self.direction_deg != DIRECTION:
             parts.append(f"{self.direction_deg:g}deg")
-        return "_".join([*parts, "scatter"] if self.scatter else parts)
+        if self.scatter:
+            parts.append("scatter" if self.scatter == SCATTER else f"scatter{1e6 * self.scatter:g}um")
+        return "_".join(parts)
 
     @property
     def title(self) -> str:
         """For a figure: ``3000 rpm, Fa 1230 N``."""
         text = f"{self.speed_rpm:g} rpm, $F_a$ {self.axial_load:g} N"
         text += f", $F_r$ {self.radial_load:g} N" if self.radial_load else ""
-        return text + (", scatter 1 µm" if self.scatter else "")
+        return text + (f", scatter {1e6 * self.scatter:g} µm" if self.scatter else "")
+
+    def within(self, inputs: Inputs) -> Condition:
+        """The same with the inputs that the paper leaves open; a direction where there is a radial load."""
+        direction = inputs.direction_deg if self.radial_load else DIRECTION
+        return replace(self, direction_deg=direction, scatter=inputs.scatter)
 
 
 def _axial(speeds: Iterable[float], loads: Iterable[float]) -> tuple[Condition, ...]:
@@ -86,7 +117,7 @@ FIGURES: Final[dict[str, tuple[Condition, ...]]] = {
     "10": (Condition(1000.0, 1230.0), Condition(3000.0, 4930.0)),
     "13": _axial([1000.0, 3000.0], [3080.0]),
     "14": _axial([3000.0], [1230.0, 4930.0]),
-    "15": (Condition(3000.0, 1230.0), Condition(3000.0, 1230.0, scatter=True)),
+    "15": (Condition(3000.0, 1230.0), Condition(3000.0, 1230.0, scatter=SCATTER)),
     "16a": tuple(Condition(speed, 4930.0, 5530.0) for speed in SPEEDS),
     "16b": tuple(Condition(2000.0, 4930.0, load) for load in RADIAL_LOADS),
     "17": (Condition(3000.0, 4930.0),),
@@ -117,7 +148,7 @@ class Point:
     @property
     def seeded(self) -> bool:
         """Whether the seed plays a part."""
-        return self.start == "unequal" or self.condition.scatter
+        return self.start == "unequal" or self.condition.scatter > 0.0
 
     @property
     def name(self) -> str:
@@ -134,7 +165,7 @@ class Point:
         }
         bearing = rig_30310()
         if condition.scatter:
-            scatter = Scatter(range=SCATTER, seed=self.seed)
+            scatter = Scatter(range=condition.scatter, seed=self.seed)
             bearing = bearing.replace(roller=bearing.roller.replace(diameter_scatter=scatter))
         return paper_30310(
             condition.speed_rpm,
@@ -156,7 +187,10 @@ def conditions(every: bool = False) -> tuple[Condition, ...]:
 
 
 def points(
-    patterns: Sequence[str] = (), starts: Sequence[StartKind] = STARTS, seeds: Sequence[int] = (0,)
+    patterns: Sequence[str] = (),
+    starts: Sequence[StartKind] = STARTS,
+    seeds: Sequence[int] = (0,),
+    inputs: Sequence[Inputs] = (Inputs(),),
 ) -> tuple[Point, ...]:
     """The points to run.
 
@@ -168,6 +202,8 @@ def points(
         Starts.
     seeds : sequence of int
         Seeds of whatever is random.
+    inputs : sequence of Inputs
+        Directions and scatters that every condition is run with.
 
     Returns
     -------
@@ -180,7 +216,7 @@ def points(
     """
     listed = [
         Point(condition, start, seed)
-        for condition in conditions(every="all" in patterns)
+        for condition in _with(conditions(every="all" in patterns), inputs)
         for start in starts
         for seed in (seeds if Point(condition, start).seeded else seeds[:1])
     ]
@@ -195,6 +231,12 @@ def points(
                 "points", pattern, f"fits no point; conditions: {names}, each with _equal, _unequal0 or _whirl"
             )
     return tuple(point for point in listed if any(_fits(point, pattern) for pattern in wanted))
+
+
+def _with(listed: Sequence[Condition], inputs: Sequence[Inputs]) -> tuple[Condition, ...]:
+    """Conditions with each of the inputs; one that has a scatter of its own keeps it."""
+    made = [c if c.scatter else c.within(one) for one in inputs for c in listed]
+    return tuple(dict.fromkeys(made))
 
 
 def _fits(point: Point, pattern: str) -> bool:

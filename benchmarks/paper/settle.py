@@ -73,6 +73,11 @@ class Plan:
 
     @classmethod
     def quick(cls) -> Plan:
+        """What a second of bearing time tells of directions and scatters: little has settled."""
+        return cls(least_time=0.5, most_time=0.5, least_time_combined=0.5, most_time_combined=0.5, accuracy="fast")
+
+    @classmethod
+    def smoke(cls) -> Plan:
         """A check that everything works, in a minute: nothing settles."""
         return cls(0.04, 0.03, 0.03, 0.06, 0.03, 0.03, 1e-3, 2e-4, "fast")
 

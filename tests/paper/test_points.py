@@ -52,7 +52,7 @@ class TestPoints:
             points(["4000rpm_*"])
 
     def test_scenes(self) -> None:
-        scene = Point(Condition(3000.0, 1230.0, scatter=True), "unequal", 3).scene()
+        scene = Point(Condition(3000.0, 1230.0, scatter=1e-6), "unequal", 3).scene()
         assert scene.effects == trb.Effects.paper().replace(quadrature="gauss", n_slices=8)
         assert (scene.speed_rpm, scene.axial_load, scene.start.kind, scene.start.seed) == (3000.0, 1230.0, "unequal", 3)
         assert 0.3e-6 < np.ptp(scene.bearing.diameter_deviation) <= 1e-6
@@ -299,7 +299,7 @@ class TestStatements:
 class TestCommand:
     @pytest.mark.slow
     def test_quick(self, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
-        words = ["-o", str(tmp_path), "--quick", "--starts", "whirl", "unequal", "--quiet"]
+        words = ["-o", str(tmp_path), "--smoke", "--starts", "whirl", "unequal", "--quiet"]
         words += ["--points", "3000rpm_4930N", "3000rpm_1230N*", "--seeds", "0", "1"]
         assert main(words) == 0
         values = json.loads((tmp_path / "paper.json").read_text())

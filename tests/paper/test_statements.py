@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import pytest
 from paper.point_numbers import read_run
-from paper.points import Condition, Point, StartKind
+from paper.points import SCATTER, Condition, Point, StartKind
 from paper.settle import Plan, PointTask, run_point
 
 from trbdyn.run.movable import Pockets
@@ -33,7 +33,7 @@ ABOUT_ONE, MUCH, CLEARLY = 0.15, 2.0, 1.5
 
 SLOW, MIDDLE, FAST = (Condition(speed, 3080.0) for speed in (1000.0, 2000.0, 3000.0))
 LIGHT, HEAVY = Condition(3000.0, 1230.0), Condition(3000.0, 4930.0)
-LIGHT_SLOW, SCATTERED = Condition(1000.0, 1230.0), Condition(3000.0, 1230.0, scatter=True)
+LIGHT_SLOW, SCATTERED = Condition(1000.0, 1230.0), Condition(3000.0, 1230.0, scatter=SCATTER)
 COMBINED = Condition(2000.0, 4930.0, 5530.0)
 COMBINED_FAST = Condition(3000.0, 4930.0, 5530.0)
 OTHERS = {
