@@ -17,9 +17,9 @@ import pytest
 from paper import command, files, point_numbers, settle
 from paper.command import main
 from paper.point_numbers import Run, Runs
-from paper.points import FIGURES, Condition, Point, conditions, points
+from paper.points import FIGURES, Condition, Inputs, Point, conditions, points
 from paper.settle import Plan, PointTask, Verdict, is_done, judge, run_point
-from paper.statements import STATEMENTS, Judged, judge_all, judge_statement, markdown
+from paper.statements import STATEMENTS, Judged, by_inputs, judge_all, judge_statement, markdown
 
 import trbdyn as trb
 from trbdyn.errors import InputError
@@ -50,6 +50,14 @@ class TestPoints:
         }
         with pytest.raises(InputError, match="fits no point"):
             points(["4000rpm_*"])
+
+    def test_directions_and_scatters(self) -> None:
+        asked = [Inputs(direction, scatter) for direction in (90.0, 180.0) for scatter in (0.0, 0.2e-6)]
+        names = [point.name for point in points(starts=["equal"], seeds=[1], inputs=asked)]
+        assert len(set(names)) == len(names) == 5 * 4 + 6 * 2 + 1
+        assert {"3000rpm_4930N_5530N_180deg_scatter0.2um_equal1", "1000rpm_3080N_scatter0.2um_equal1"} <= set(names)
+        scene = next(p for p in points(inputs=asked) if p.name == "2000rpm_4930N_8380N_180deg_equal").scene()
+        assert scene.radial_direction_deg == 180.0
 
     def test_scenes(self) -> None:
         scene = Point(Condition(3000.0, 1230.0, scatter=1e-6), "unequal", 3).scene()
@@ -267,9 +275,44 @@ class TestStatements:
             table = {"whirl_ratio": ratio, "cage_motion": kind}
             return made_up({(c, "whirl"): dict(table) for c in FIGURES["12a"]})
 
-        assert self.verdict("8a-frequency", runs(1.01, "circling"))[0] == "agrees"
-        assert self.verdict("8a-frequency", runs(1.2, "circling"))[0] == "disagrees"
-        assert self.verdict("8a-frequency", runs(1.0, "stable"))[0] == "disagrees"
+        assert self.verdict("8a-measured", runs(1.01, "circling"))[0] == "agrees"
+        assert self.verdict("8a-measured", runs(1.2, "circling"))[0] == "disagrees"
+        assert self.verdict("8a-measured", runs(1.0, "stable"))[0] == "disagrees"
+
+    def test_most_conditions_are_more_than_half(self) -> None:
+        conditions = list(dict.fromkeys((*FIGURES["12a"], *FIGURES["12b"])))
+
+        def runs(circling: int) -> Runs:
+            kinds = ["circling"] * circling + ["stable"] * (len(conditions) - circling)
+            tables = [{"whirl_ratio": 1.0, "cage_motion": kind} for kind in kinds]
+            return made_up(dict(zip([(c, "equal") for c in conditions], tables, strict=True)))
+
+        assert self.verdict("12-simulated", runs(3))[0] == "agrees"
+        assert self.verdict("12-simulated", runs(2))[0] == "disagrees"
+
+    def test_statements_are_judged_for_each_of_the_inputs_left_open(self) -> None:
+        """Reach under combined load by direction: those of one are not mixed with those of another."""
+        combined = tuple(dict.fromkeys((*FIGURES["16a"], *FIGURES["16b"])))
+        other, scattered = Inputs(180.0), Inputs(180.0, 0.2e-6)
+        given = {(c, "equal"): orbit(0.9) for c in combined}
+        given |= {(c.within(other), "equal"): orbit(0.47) for c in combined}
+        given |= {(c.within(scattered), "equal"): orbit(0.1) for c in combined}
+        runs = made_up(given)
+        assert set(runs.inputs) == {Inputs(), other, scattered}
+        sets = {inputs: [judged("16-size", runs.within(inputs))] for inputs in runs.inputs}
+        found = [sets[inputs][0].verdict for inputs in (Inputs(), other, scattered)]
+        assert found == ["disagrees", "agrees", "disagrees"]
+        table = by_inputs(sets)
+        size = next(line for line in table.splitlines() if "about Cpc/Cpr" in line)
+        assert size == "| 11 / 16 | It is about Cpc/Cpr there. | **no** | yes | **no** |"
+        assert "| agree, of those judged |" in table
+
+    def test_scatter_of_figure_15_beside_every_scatter_but_its_own(self) -> None:
+        even, scattered = FIGURES["15"]
+        fine = even.within(Inputs(scatter=0.2e-6))
+        given = {(even, "equal"): orbit(0.03), (fine, "equal"): orbit(0.05), (scattered, "equal"): orbit(0.18)}
+        verdicts = [judged("15-scatter", made_up(given).within(Inputs(scatter=s))) for s in (0.0, 0.2e-6, 1e-6)]
+        assert [entry.verdict for entry in verdicts] == ["agrees", "agrees", "open"]
 
     def test_equalising(self) -> None:
         condition = FIGURES["18"][0]
