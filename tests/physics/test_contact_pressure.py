@@ -70,6 +70,49 @@ def test_the_logarithmic_profile_gives_the_uniform_pressure_that_it_was_designed
     assert finite.max() < 1.05 * HERTZ
 
 
+def test_the_profile_of_fujiwara_and_kawase() -> None:
+    """NTN Technical Review 75 (2007): with K1 = K2 = 1 it is that of Johns and Gohar, designed for a uniform pressure, which has
+    pressure at its edge when the roller tilts; a larger drop at the end takes it away.
+    """
+    y, tilt = places(128), 2e-4
+    size = LOAD / (math.pi * LENGTH * MODULUS)
+    how = {"station": y, "length": LENGTH, "load": LOAD, "effective_modulus": 2.0 * MODULUS}
+    johns_gohar = trb.laws.profile_logarithmic(k1=1.0, k2=1.0, zm=-size * math.log(0.3033 * 2.0 * HALF / LENGTH), **how)
+    modified = trb.laws.profile_logarithmic(k1=3.0, k2=1.0, zm=20e-6, **how)
+    level = pressed(line(johns_gohar)).found.pressure.max(axis=1)
+    assert level[np.abs(y) < 0.475 * LENGTH] / HERTZ == pytest.approx(1.0, abs=1e-2)
+    assert level.max() < 1.05 * HERTZ
+    edge, none = (pressed(line(drop - tilt * y), None).found.pressure.max(axis=1) for drop in (johns_gohar, modified))
+    assert edge[-1] == edge.max() > 1.6 * HERTZ
+    assert none[-1] < 0.75 * HERTZ
+    assert none.max() < 1.3 * HERTZ
+    assert y[none.argmax()] < 0.45 * LENGTH
+
+
+def test_a_sharp_end_has_the_known_singularity() -> None:
+    """At the end of a body that ends at a right angle on one that goes on, both of one material and without friction, the
+    pressure rises with the distance to the power -0.226: Dundurs and Lee (1972), J. Elasticity 2, 109-112. Of two half spaces it
+    is -1/2; with images of the factor psi the cosine of pi times 1 plus the power is -psi/2.
+    """
+
+    def corner(power: float) -> float:
+        turn = math.pi * power
+        return 2.0 / math.tan(turn) + math.sin(turn) / (math.sin(0.5 * turn) ** 2 - power**2)
+
+    known = 1.0 - scipy.optimize.brentq(corner, 0.6, 0.95)
+    assert known == pytest.approx(0.226, abs=5e-4)
+    length, found = 0.6e-3, {}
+    for factor in (0.0, guilbault_factor(0.3)):
+        ends = [
+            pressed(line(np.zeros(count), length, mirrored=factor), load=LOAD * length / LENGTH).found.pressure[0].max()
+            for count in (128, 256)
+        ]
+        found[factor] = math.log2(ends[1] / ends[0])
+    assert found[0.0] == pytest.approx(0.5, abs=0.02)
+    assert found[guilbault_factor(0.3)] == pytest.approx(known, abs=0.03)
+    assert 1.0 - math.acos(-0.5 * guilbault_factor(0.3)) / math.pi == pytest.approx(known, abs=0.03)
+
+
 def test_free_ends_take_pressure_away_from_the_ends() -> None:
     free, going_on = (
         pressed(line(np.zeros(128), mirrored=factor)).found.pressure.max(axis=1) for factor in (1.39, 0.0)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 import pickle
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import trbdyn as trb
+from trbdyn.run.controlled import Controlled
 
 RING = trb.RingBody(mass=3.0, inertia_axial=2e-3, inertia_transverse=2e-3, damping=500.0)
 
@@ -205,12 +207,88 @@ def test_feedback_by_a_callback() -> None:
     assert stopped["time"][-1] == pytest.approx(3e-4)
 
 
+def held_place() -> trb.Scene:
+    place = float(trb.Simulation(trb.cases.scene_30310(1000.0, 5e3)).equilibrium.displacement[2])
+    return trb.cases.scene_30310(1000.0, 5e3).replace(axial_load=0.0, displacement=(None, None, place))
+
+
+def of_one(simulation: trb.Simulation) -> dict[str, Any]:
+    """An integrating controller, which keeps its place and changes speed and oil as well."""
+    kept = simulation.memory
+    kept["place"] = kept.get("place", simulation.scene.displacement[2]) - 1e-9 * (
+        6e3 - float(simulation.record()["ring_force"][2])
+    )
+    given: dict[str, Any] = {"displacement": (None, None, kept["place"])}
+    return given | (
+        {"speed_rpm": 1000.0 + 1e4 * simulation.time, "temperature_c": 62.0} if simulation.time > 2e-4 else {}
+    )
+
+
+def of_two(simulation: trb.Simulation) -> dict[str, Any] | None:
+    count = simulation.memory["count"] = simulation.memory.get("count", 0) + 1
+    if count % 2:
+        return None
+    return {"loads": (trb.ShaftLoad(position=0.02, force=(100.0 * count, 0.0, -200.0)),), "speed_rpm": 1000.0 + count}
+
+
+@pytest.mark.parametrize("several", [False, True], ids=["a bearing", "bearings on a shaft"])
+def test_checkpoints_keep_inputs(several: bool, tmp_path: Path) -> None:
+    """A run whose callback gives inputs goes on from a checkpoint with the bits of one that was never cut."""
+    subject, callback = (pair(), of_two) if several else (held_place(), of_one)
+    path, how = tmp_path / "run.h5", {"duration": 7e-4, "callback_every": 1e-4, "checkpoint_every": 1.5e-4}
+    whole = trb.Simulation(subject)
+    expected = whole.run(**how, callback=callback)
+
+    def cut(simulation: trb.Simulation) -> Any:
+        if simulation.time > 4.5e-4:
+            raise RuntimeError("cut")
+        return callback(simulation)
+
+    with pytest.raises(RuntimeError, match="cut"):
+        trb.Simulation(subject).run(**how, callback=cut, output=path)
+    with pytest.raises(trb.InputError, match="callback"):
+        trb.resume(path)
+    memories: list[dict[str, Any]] = []
+
+    def watching(simulation: trb.Simulation) -> Any:
+        memories.append(dict(simulation.memory))
+        return callback(simulation)
+
+    found = trb.resume(path, callback=watching)
+    assert memories[0]  # the callback finds what it kept
+    assert len(memories) < 6  # it did not begin again
+    names = ("time", "cage_position", "ring_force", "work_shaft", "shaft_speed")
+    for of, own in ((found.by_name[name], expected.by_name[name]) for name in found.by_name):
+        assert len(of) == len(own) == 8
+        for name in names:
+            np.testing.assert_allclose(of[name], own[name], rtol=2e-7, atol=1e-30)  # 7 digits in a file
+        assert of.stats["steps"] == own.stats["steps"]
+        assert of.stats["restarts"] == own.stats["restarts"]
+    if not several:
+        np.testing.assert_array_equal(found.final_state, expected.final_state)
+    # the schedule is part of the run, whether or not it has a file
+    assert whole.state.memory == memories[-1] | whole.memory
+
+
+def test_what_a_callback_keeps_is_part_of_a_state() -> None:
+    simulation = trb.Simulation(held_place())
+    simulation.run(duration=2e-4, callback=of_one, callback_every=1e-4)
+    state, copied = simulation.state, simulation.copy()
+    simulation.memory["place"] = 0.0
+    assert copied.memory == state.memory == {"place": pytest.approx(-1.1e-5, abs=2e-5)}
+    assert copied.memory["place"] != 0.0
+    simulation.set_state(pickle.loads(pickle.dumps(state)))
+    assert simulation.memory == copied.memory
+    for kept in ({"a": (1.0, 2.0)}, {"a": math.nan}, {1: 2.0}, {"a": np.zeros(2)}):
+        simulation.memory = kept
+        with pytest.raises(trb.InputError, match="memory"):
+            Controlled(simulation, simulation.options, np.array([0.0]), None)._control()
+
+
 def test_runs_and_inputs_do_not_mix_unsaid() -> None:
     simulation = trb.Simulation(free())
     simulation.step(to=1e-4, axial_load=5.5e3)
     with pytest.raises(trb.InputError, match="callback_every"):
         simulation.run(duration=1e-3)
-    with pytest.raises(trb.InputError, match="checkpoint_every"):
-        simulation.run(duration=1e-3, callback_every=1e-4, checkpoint_every=1e-4)
     with pytest.raises(trb.InputError, match="callback"):
         simulation.run(duration=1e-3, callback_every=1e-4, callback=lambda one: 3.0)

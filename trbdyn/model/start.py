@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
@@ -32,6 +32,8 @@ class State:
         What the support of a housing carried where the run began: force along x, y, z (N), moment about x, y (N m).
     inputs : object, optional
         What was in force where inputs were given between steps; `Simulation.set_state` puts it in force again.
+    memory : dict
+        What a callback keeps in `Simulation.memory`, a copy.
     """
 
     time: float
@@ -40,6 +42,7 @@ class State:
     displacement: NDArray[np.float64] | None = None
     housing_load: NDArray[np.float64] | None = None
     inputs: Any = None
+    memory: dict[str, Any] = field(default_factory=dict)
 
 
 class Start(Model):

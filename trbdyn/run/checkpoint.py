@@ -4,7 +4,7 @@ A run with a schedule (`checkpoint_every`) starts its integrator again at the fi
 that time, whether or not anybody resumes it. So a run that goes on from a checkpoint, in another process, takes the same steps
 as one that was never interrupted: to the last bit, on the same build and instruction set.
 
-The file ``run.h5.checkpoint`` beside ``run.h5``, format version 3: a line that names the format and its version; the SHA-256 of
+The file ``run.h5.checkpoint`` beside ``run.h5``, format version 4: a line that names the format and its version; the SHA-256 of
 all that follows; a line of JSON; the state vector and the peaks so far as little-endian float64. It is written under another
 name, synchronised to the disk and then renamed; the one before it stays as ``run.h5.checkpoint.previous``. Nothing in it is
 executed.
@@ -33,7 +33,7 @@ from trbdyn.errors import FileError, InputError
 Array = NDArray[np.float64]
 
 MAGIC = b"trbdyn-checkpoint"
-VERSION = 3
+VERSION = 4
 
 LARGEST = 64 << 20
 """Size of a file beyond which it is no checkpoint (bytes)."""
@@ -61,6 +61,7 @@ class Checkpoint:
     core and the prescribed motion of the rings. The run goes from `start` to `end` (s). At `time` (s) it had made `done` records,
     in a wall time of stepping of `stepping_s` (s). What the integrator and the effects had done, and what the watch had found, is
     that of by then, and so are the state, shape (n_state,), and the peaks, as the core saves them, empty if the run keeps none.
+    Of a run whose callback gives inputs, `control` has those in force and the numbers that the callback keeps.
     """
 
     run_id: str
@@ -80,6 +81,7 @@ class Checkpoint:
     state: Array = field(repr=False)
     peaks: Array = field(repr=False)
     warnings: list[str] = field(default_factory=list)
+    control: dict[str, Any] | None = None
 
     def to_bytes(self) -> bytes:
         """The file's content."""
@@ -140,6 +142,10 @@ class Checkpoint:
             raise ValueError("its warnings are not texts")
         if np.isnan(self.peaks).any():
             raise ValueError("its peaks are not numbers")
+        if self.control is not None and (
+            not isinstance(self.control, dict) or self.control.keys() != {"inputs", "memory"}
+        ):
+            raise ValueError("its inputs are not what a checkpoint holds there")
 
 
 def next_time(after: float, every: float | None) -> float:

@@ -10,20 +10,19 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final, Literal
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn import _core
 from trbdyn.errors import InputError, LoadError, unknown_name
-from trbdyn.model.assembly import Subject
+from trbdyn.model.assembly import Subject, subject_from_dict
 from trbdyn.model.flatten import HOUSING_LOADS, load_channels, motion_table
 from trbdyn.model.motion import value_at
 from trbdyn.model.scene import Scene
 from trbdyn.model.shaft import angle_turned
-from trbdyn.run.running import Run
 from trbdyn.statics.assembly import ShaftEquilibrium, equilibrium
 from trbdyn.statics.core_model import normal_contacts
 from trbdyn.statics.equilibrium import EquilibriumSolver, nominal_angles
@@ -59,6 +58,7 @@ RATES: Final = {
 }
 """Inputs whose rates may be given, and their channels."""
 BETWEEN: Final = ("held", "linear")
+_OF_MOTION: Final = tuple(one.name for one in fields(RingMotion) if one.name != "table")
 
 
 @dataclass(frozen=True)
@@ -97,6 +97,29 @@ class Inputs:
     def angle(self, time: float) -> float:
         """Angle of the shaft at a time (rad)."""
         return turned(self.motions[0], "shaft_speed", self.motions[0].shaft_angle, time)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data, from which `of_dict` makes the same numbers."""
+        motions = [
+            {name: getattr(one, name) for name in _OF_MOTION} | {"table": one.table.tolist()} for one in self.motions
+        ]
+        return {
+            "subject": self.subject.to_dict(),
+            "motions": motions,
+            "values": [one.tolist() for one in self.values],
+            "until": self.until,
+            "rates": None if self.rates is None else self.rates.tolist(),
+        }
+
+    @classmethod
+    def of_dict(cls, found: Mapping[str, Any]) -> Inputs:
+        """What `to_dict` wrote; the equilibrium of an assembly is found again where it is needed."""
+        motions = [RingMotion(**{**one, "table": np.array(one["table"], dtype=float)}) for one in found["motions"]]
+        values = [np.array(one, dtype=float) for one in found["values"]]
+        rates = None if found["rates"] is None else np.array(found["rates"], dtype=float)
+        return cls(
+            subject_from_dict(found["subject"]), tuple(motions), tuple(values), float(found["until"]), rates=rates
+        )
 
 
 def _channel(name: str) -> int:
@@ -344,45 +367,3 @@ def _bent(motion: RingMotion, to: float, wanted: Array, begin: Array | None, end
     jumps = [(_channel(name) - 1) // 2 for name in load_channels()]
     table[1, 1 + 2 * np.array(jumps)] = values[jumps] + length * last[jumps]
     return replace(motion, table=table)
-
-
-class Controlled(Run):
-    """A run whose callback is called at each record, and gives the inputs until the next one."""
-
-    between: Literal["held", "linear"] = "held"
-
-    def _loop(self, bar: Any) -> str | None:
-        sim, answer = self.sim, None
-        for one in self.bearings:
-            text = (
-                "a callback gave inputs while it ran; the scene of this result has those of the beginning, and the records what "
-                "followed"
-            )
-            one.notes.append(text)
-        for time in self.times:
-            if self.done:
-                sim.step(to=float(time), between=self.between, **(answer or {}))
-            state = sim.state
-            self._keep(sim._core.observe(state.time, state.vector)[None, :])
-            bar.update(sim.time - float(self.times[0]) - bar.n)
-            answer = self._answer()
-            if self.interrupted:
-                raise KeyboardInterrupt
-            if answer is True:
-                return f"ended by the callback at {sim.time:.6g} s"
-        return None
-
-    def _answer(self) -> Any:
-        """What the callback gives: inputs, True to end, or nothing."""
-        if self.callback is None:
-            return None
-        self.sim._running = True
-        try:
-            found = self.callback(self.sim)
-        finally:
-            self.sim._running = False
-        if found is None or isinstance(found, bool | Mapping):
-            return found
-        raise InputError.of(
-            "callback", type(found).__name__, "must give a dict of inputs, True to end the run, or None"
-        )

@@ -18,6 +18,7 @@ from trbdyn.results.file_source import FileSource, names_in
 from trbdyn.results.result import Result
 from trbdyn.run import checkpoint
 from trbdyn.run.checkpoint import Checkpoint
+from trbdyn.run.controlled import Controlled, control_again
 from trbdyn.run.keeping import interval
 from trbdyn.run.options import OF_ONE_RUN, RunOptions
 from trbdyn.run.running import Callback, Run, motions_digest, output_times
@@ -46,7 +47,8 @@ def resume(
     progress : bool
         Show a progress bar.
     callback : callable, optional
-        As in `Simulation.run`.
+        As in `Simulation.run`; must be given for a run whose callback gives inputs. It finds `simulation.memory` as it was at the
+        checkpoint.
 
     Returns
     -------
@@ -58,7 +60,7 @@ def resume(
     FileError
         If there is no checkpoint that can be used, or another process is writing the run.
     InputError
-        If this machine does not run the instruction set.
+        If this machine does not run the instruction set, or a run whose callback gives inputs has none.
     StepError
         As in `Simulation.run`.
 
@@ -86,6 +88,9 @@ def resume(
     where = checkpoint.checkpoint_path(output)
     if older is not None and any(one.run_id != found.run_id for one in older):
         raise FileError(f"{where}: the checkpoint belongs to another run than {output}")
+    if found.control is not None and callback is None:
+        limit = "must be given: the run that is resumed had a callback that gives inputs"
+        raise InputError.of("callback", None, limit)
     sim, options = _revived(output, found, instruction_set, tell)
     every = options.save_every or interval(found.end - found.start, sim.scene.turning_rpm)
     times = output_times(found.start, found.end, every)
@@ -93,7 +98,8 @@ def resume(
         raise FileError(f"{where}: the checkpoint cannot be used: it has too many records")
     if older is not None and any(one.first_record + one.n_records < found.done for one in older):
         raise FileError(f"{output}: the result file holds fewer records than its checkpoint says")
-    run = Run(sim, options, times, callback, found.done)
+    kind = Run if found.control is None else Controlled
+    run = kind(sim, options, times, callback, found.done)
     run.spent = found.stepping_s
     for bearing in run.bearings:
         bearing.notes[:] = notes
@@ -146,8 +152,10 @@ def _revived(
         sim = Simulation(subject, instruction_set=variant, **settings)
         if found.build != checkpoint.build_digest():
             tell("going on with another build of the core: results may differ in rounding from the uninterrupted run")
-        elif found.motion != motions_digest(sim):
+        elif found.control is None and found.motion != motions_digest(sim):
             tell("the equilibrium differs in rounding on this machine: results may differ from the uninterrupted run")
+        if found.control is not None:
+            control_again(sim, found.control)
         sim._begin(found.time, found.state)
         if found.peaks.size:
             sim._core.restore_peaks(found.peaks)

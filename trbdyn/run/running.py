@@ -359,8 +359,13 @@ class Run:
             peaks=sim._core.save_peaks(),
             warnings=[f"{one.of.said}{text}" for one in self.bearings for text in one.doubts]
             + [text for watch in self.watches for text in watch.averages_doubts(named=True)],
+            control=self._control(),
         )
         checkpoint.write(checkpoint.checkpoint_path(self.output), found)
+
+    def _control(self) -> dict[str, Any] | None:
+        """What is kept of inputs that a callback gives; None where it gives none."""
+        return None
 
     def _abandon(self) -> None:
         """Leave a result file that cannot be written as it is: the records in it can be read, a checkpoint goes on

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import copy
 import math
 import warnings
 from collections.abc import Callable, Mapping, Sequence
@@ -24,8 +25,9 @@ from trbdyn.model.scene import Scene
 from trbdyn.model.start import State as State
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.result import Result
+from trbdyn.run.controlled import Controlled
 from trbdyn.run.estimate import Estimate, estimate
-from trbdyn.run.inputs import Controlled, Inputs, give, put_back
+from trbdyn.run.inputs import Inputs, give, put_back
 from trbdyn.run.keeping import groups_of, kept_by_default
 from trbdyn.run.options import Group, RunOptions
 from trbdyn.run.running import Callback, Run, output_times
@@ -123,6 +125,7 @@ class Simulation(Displayed, Generic[R]):
         self._counted: dict[str, int] = {}
         self._accounts: dict[str, Account] = {}
         self._inputs: Inputs | None = None
+        self.memory = {}
         self._begin(self._seated.time, self._seated.vector)
         self._reached = self._seated.time
 
@@ -162,6 +165,8 @@ class Simulation(Displayed, Generic[R]):
         return value(self.bearings[0]) if alone else {one.name: value(one) for one in self.bearings}
 
     warnings: tuple[str, ...]
+    memory: dict[str, Any]
+    """Numbers that a callback keeps from call to call; states, copies and checkpoints have them, too."""
     _end: State | None
     """Where a run has ended, inside the integrator's last step; None where the present state is the end of that
     step.
@@ -189,7 +194,12 @@ class Simulation(Displayed, Generic[R]):
             raise
         self._count()
         self._core, self._begun, self._end = core, state.time, None
+        self._put(bearings, inputs)
+
+    def _put(self, bearings: tuple[SeatedBearing, ...], inputs: Inputs) -> None:
+        """Have other inputs in force in what is opened next."""
         self.bearings, self._inputs = bearings, inputs
+        self._seated = replace(self._seated, bearings=bearings)
 
     def _begin(self, time: float, vector: Array) -> None:
         """Make a new integrator, without any history: as in a new process."""
@@ -254,7 +264,7 @@ class Simulation(Displayed, Generic[R]):
         else:
             angle = inputs.angle(time)
         held = None if first.scene.housing is None else first.motion.housing_load
-        return State(time, vector, angle, first.motion.displacement(time), held, inputs)
+        return State(time, vector, angle, first.motion.displacement(time), held, inputs, copy.deepcopy(self.memory))
 
     def view(self, vector: Array | None = None) -> Any:
         """Parts of a state vector by name (`StateView`); of a copy of the present one by default. Those of the first bearing's
@@ -290,12 +300,13 @@ class Simulation(Displayed, Generic[R]):
             given, when = _numbers(vector), self.time
         when = when if time is None else number_of("time", time)
         if isinstance(vector, State) and vector.inputs is not None:
-            self.bearings, self._inputs = put_back(self, vector.inputs), vector.inputs
-            self._seated = replace(self._seated, bearings=self.bearings)
+            self._put(put_back(self, vector.inputs), vector.inputs)
         core = self._open(when, given)
         self._count()
         self._core, self._begun, self._reached, self._end = core, when, when, None
         self._accounts = {}
+        if isinstance(vector, State):
+            self.memory = copy.deepcopy(vector.memory)
 
     def copy(self) -> Self:
         """An independent simulation at the same state; its integrator starts there."""
@@ -304,6 +315,7 @@ class Simulation(Displayed, Generic[R]):
         other._running = False
         other._totals, other._counted, other._accounts = {}, {}, {}
         present = self.state
+        other.memory = present.memory
         other._begin(present.time, present.vector)
         other._reached = present.time
         return other
@@ -518,6 +530,8 @@ class Simulation(Displayed, Generic[R]):
         callback_every : float, optional
             Bearing time between two calls of the callback (s). It then may give a dict of inputs, see `step`, which are in force
             until its next call: feedback. Records are made at these times, without peaks; the same callback gives the same bits.
+            Numbers that it needs from call to call it keeps in `memory`, a dict of this simulation that states and checkpoints
+            have, too.
         checkpoint_every : float, optional
             Bearing time between checkpoints (s), see `RunOptions`; by default that of this simulation's options.
             Together with `output`, checkpoints are written beside it, and `resume` goes on from the last one.
@@ -547,7 +561,7 @@ class Simulation(Displayed, Generic[R]):
             callback_every = number_of("callback_every", callback_every)
             if not callback_every > 0.0:
                 raise InputError.of("callback_every", callback_every, "must be > 0 (s)")
-            alone = {"save_every": save_every, "until": until, "checkpoint_every": checkpoint_every}
+            alone = {"save_every": save_every, "until": until}
             for name, value in alone.items():
                 if value is not None:
                     raise InputError.of(name, value, "must not be given together with callback_every")
