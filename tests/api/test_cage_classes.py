@@ -128,7 +128,8 @@ def test_how_long_it_takes_to_tell() -> None:
     assert creeping.needed == pytest.approx(9.0, abs=0.1)
     drifting = obs.motion_settling(t, 2.0 * np.pi * 14.0 * t, 0.1 + 0.2 * t, creep_time=0.1)
     assert drifting.answer == "drifting"
-    assert drifting.needed == pytest.approx(3.0 + 3.0 * drifting.time_scale)
+    assert 3.0 <= drifting.needed <= 3.0 + 3.0 * drifting.time_scale
+    assert np.isnan(drifting.needed_high)
     settled = obs.motion_settling(t, 2.0 * np.pi * 14.0 * t, np.full(t.size, 0.1), creep_time=0.1)
     assert settled.answer == "settled"
     assert np.isnan(settled.needed)

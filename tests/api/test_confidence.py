@@ -354,6 +354,28 @@ def test_each_average_is_judged_by_itself(settling: str) -> None:
         assert any(ended) == known, name
 
 
+@pytest.mark.parametrize("settling", ["settled", "unknown", "drifting"])
+def test_the_motion_of_the_cage_is_waited_for(settling: str) -> None:
+    """By its name alone, or with the share of Cpr within which its orbit must be known."""
+    wanted = trb.RunOptions(revolutions=1.0, until="cage").until
+    assert wanted == {"cage": observables.LIMITS["orbit radius"]}
+    for share, known in ((wanted["cage"], settling == "settled"), (1e-4, False)):
+        looks = Until({"cage": share}, 1000)
+        ended = [looks.reached(done, lambda: Looked(settling)) for done in looks._looks]  # type: ignore[arg-type, return-value]
+        assert any(ended) == known
+        said = "has settled within 0.001 Cpr" if settling == "settled" else "is not known to have settled"
+        assert looks.said.startswith(f"the cage's motion {said}")
+
+
+def test_a_run_ends_when_the_motion_of_the_cage_has_settled() -> None:
+    """1230 N at 3000 rpm: the whirl dies within half a second, and the rollers creep within 0.1 s."""
+    result = rolling().run(duration=4.0, until="cage")
+    assert result.success
+    assert result.duration < 3.0
+    assert result.settling().settled
+    assert "the cage's motion has settled within" in result.message
+
+
 @pytest.mark.slow
 def test_creep_that_a_run_is_short_against_leaves_the_cage_no_interval() -> None:
     """Combined load: the rollers creep within 1.3 s, so that half a second tells nothing of the cage, and the run goes on."""
@@ -391,6 +413,8 @@ def test_what_is_not_kept_cannot_be_asked_for() -> None:
     alone = trb.Simulation(paper_30310(3000.0, 4930.0, effects=effects))
     with pytest.raises(trb.InputError, match="needs a cage"):
         alone.run(duration=0.1, until={"pocket_duty": 0.1})
+    with pytest.raises(trb.InputError, match="needs a cage"):
+        alone.run(duration=0.1, until="cage")
 
 
 def test_a_run_too_short_for_a_look_says_so() -> None:

@@ -205,14 +205,15 @@ def slow(rng: np.random.Generator, count: int, memory: int, size: float) -> np.n
 
 
 def test_a_promised_length_holds() -> None:
-    """Records that grow by a fifth from look to look until they are told: the length lies in at least nine of ten ranges that
-    were promised before, and none has settled sooner than was said.
+    """Records that grow by a fifth from look to look until they are told: the length lies in 95 of 100 ranges that were promised
+    before, also where the scatter is as slow as several turns, and none has settled sooner than was said.
     """
-    step, last = 2e-3, 20.0
+    step, last = 5e-3, 20.0
     t = np.arange(0.0, last, step)
     held: list[bool] = []
+    soon: list[bool] = []
     for seed in range(6):
-        for memory, size, creep in ((10, 0.05, 1.0), (10, 0.15, 0.1), (50, 0.05, 0.1)):
+        for memory, size, creep in ((4, 0.05, 1.0), (4, 0.15, 0.1), (20, 0.1, 0.1), (60, 0.1, 0.1)):
             rng = np.random.default_rng(seed)
             place = (0.5 + slow(rng, t.size, memory, size)) * np.exp(1j * CAGE * t)
             centre, spacing = np.column_stack([place.real, place.imag]), 0.3 + slow(rng, t.size, memory, 0.1 * size)
@@ -225,25 +226,59 @@ def test_a_promised_length_holds() -> None:
                 promised.append((found.needed, found.needed_high))
                 length *= 1.2
             for low, high in promised:
-                assert found.answer != "settled" or length >= low / 1.2
-                if not math.isnan(high):
+                soon.append(found.answer == "settled" and length < low / 1.2)
+                if not math.isnan(high) and (length < last or 1.2 * high < last):
                     held.append(length <= 1.2 * high)
     assert len(held) > 40
-    assert np.mean(held) >= 0.9
+    assert np.mean(held) >= 0.95
+    assert np.mean(soon) <= 0.02
+
+
+def test_a_drift_does_not_end_before_its_promised_length() -> None:
+    """An approach with scatter, looked at as above: it has not settled before what was promised while it drifted."""
+    t, step = np.arange(0.0, 12.0, 5e-3), 5e-3
+    soon: list[bool] = []
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        place = (0.5 + 0.4 * np.exp(-t) + slow(rng, t.size, 10, 0.02)) * np.exp(1j * CAGE * t)
+        centre, spacing = np.column_stack([place.real, place.imag]), np.full(t.size, 0.3)
+        length, promised = 0.6, []
+        while length < 12.0:
+            cut = slice(0, int(length / step))
+            found = obs.motion_settling(t[cut], CAGE * t[cut], spacing[cut], centre[cut], CAGE * t[cut], 0.1)
+            if found.settled:
+                break
+            if found.answer == "drifting":
+                promised.append(found.needed)
+                assert math.isnan(found.needed_high)
+            length *= 1.2
+        assert found.settled
+        soon += [length < low / 1.2 for low in promised]
+    assert len(soon) > 10
+    assert np.mean(soon) <= 0.05
 
 
 def test_a_mean_is_known_as_the_square_root_of_the_length() -> None:
-    """Sixteen times the turns, a quarter of the error; and the interval holds the true mean."""
-    widths, held = [], []
-    for count in (24, 384):
-        found = []
-        for seed in range(60):
-            values = 1.0 + 0.01 * np.random.default_rng(seed).normal(size=count)
-            found.append(obs.mean_unknown(np.arange(count), values))
-            held.append(abs(values.mean() - 1.0) <= found[-1])
-        widths.append(np.median(found))
-    assert widths[0] / widths[1] == pytest.approx(4.0, rel=0.25)
-    assert np.mean(held) > 0.9
+    """Sixteen times the turns, a quarter of the error; and the interval holds the true mean, also of turns that are alike."""
+    for memory in (0, 3):
+        widths, held = [], []
+        for count in (96, 1536):
+            found = []
+            for seed in range(30):
+                rng = np.random.default_rng(seed)
+                scatter = slow(rng, count + 50, memory, 0.01)[50:] if memory else 0.01 * rng.normal(size=count)
+                found.append(obs.mean_unknown(np.arange(count), 1.0 + scatter))
+                held.append(abs(scatter.mean()) <= found[-1])
+            widths.append(np.median(found))
+        assert widths[0] / widths[1] == pytest.approx(4.0, rel=0.45 if memory else 0.25)
+        assert np.mean(held) >= 0.95
+
+
+def test_the_mean_of_a_drift_is_not_known() -> None:
+    """Turns that climb by one and scatter: their mean may be off by as much."""
+    t = np.linspace(0.0, 1.0, 40)
+    for seed in range(5):
+        assert obs.mean_unknown(t, t + 0.05 * np.random.default_rng(seed).normal(size=40)) > 0.8
 
 
 @pytest.mark.parametrize(
@@ -281,7 +316,10 @@ def test_starts_side_by_side() -> None:
     found = obs.compare_starts((rest, large), window=20)
     assert found.verdict == "agreed"
     assert found.orbit == pytest.approx(0.1, abs=found.error)
-    assert obs.compare_starts((rest, large), window=20, kinds=["rocking", "stable"]).verdict == "unknown"
+    assert obs.compare_starts((rest, large), window=20, kinds=["rocking", "stable"]).verdict == "agreed"
+    apart = obs.compare_starts((rest, large), window=20, kinds=["rocking", "circling"])
+    assert apart.verdict == "unknown"
+    assert "one of them is circling, the other rocking" in apart.reason
     high = whirling(lambda t: 0.9 + 0 * t)
     between = whirling(lambda t: 0.3 + 0.056 * t, 60)
     grows = obs.compare_starts((rest, high), between, window=20, creep_turns=90.0)
@@ -294,5 +332,42 @@ def test_starts_side_by_side() -> None:
     gone = whirling(lambda t: 0.9 - 0.6 * np.exp(-4.0 * t), 120)
     assert obs.compare_starts((rest, high), gone, window=20, creep_turns=30.0).verdict == "two motions"
     still = obs.compare_starts((rest, high), whirling(lambda t: 0.3 + 0 * t, 60), window=20, creep_turns=5000.0)
-    assert still.verdict == "unknown"
-    assert "creep within 5e+03 turns" in still.reason
+    assert still.verdict == "start decides"
+    assert still.ends == pytest.approx((0.1, 0.9), abs=0.01)
+    assert still.time_low > 6.0
+    soon = obs.compare_starts((rest, high), whirling(lambda t: 0.3 + 0 * t, 60), window=20, creep_turns=90.0)
+    assert soon.verdict == "unknown"
+    assert "creep within 90 turns" in soon.reason
+
+
+def test_starts_that_move_towards_each_other_or_apart() -> None:
+    """From both sides; a start between that is there already shows where the other goes; and what cannot be: apart."""
+    up, down = whirling(lambda t: 0.1 + 0.05 * t), whirling(lambda t: 0.9 - 0.04 * t)
+    still, low, high = (whirling(lambda t, at=at: at + 0 * t) for at in (0.4, 0.1, 0.9))
+    meets = obs.compare_starts((up, down), still, window=20)
+    assert meets.verdict == "meets"
+    assert meets.rate == pytest.approx(-0.09, abs=4.0 * meets.rate_error)
+    assert meets.time_low < (meets.ends[1] - meets.ends[0]) / 0.09 < meets.time_high
+    between = obs.compare_starts((low, down), whirling(lambda t: 0.2 + 0.03 * t), window=20)
+    assert (between.verdict, round(between.orbit, 2)) == ("meets", 0.52)
+    assert obs.compare_starts((low, down), low, window=20).verdict == "dies"
+    assert obs.compare_starts((up, high), high, window=20).verdict == "grows"
+    assert obs.compare_starts((low, down), still, window=20).verdict == "unknown"
+    apart = obs.compare_starts(
+        (whirling(lambda t: 0.3 - 0.03 * t), high), whirling(lambda t: 0.4 + 0.03 * t), window=20
+    )
+    assert apart.verdict == "unknown"
+
+
+def test_starts_that_scatter_agree_over_a_longer_part() -> None:
+    """Scatter of 0.08 Cpr: a window of 20 turns tells no mean, half of 240 mostly does, and then holds it."""
+    t, agreed = np.arange(240) * 0.05, 0
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        one, other = ((t, 0.6 + slow(rng, 240, 1, 0.08)) for _ in range(2))
+        short = (one[0][:40], one[1][:40]), (other[0][:40], other[1][:40])
+        assert obs.compare_starts(short, window=20).verdict == "unknown"
+        found = obs.compare_starts((one, other), window=20)
+        agreed += found.verdict == "agreed"
+        assert found.verdict != "agreed" or found.orbit == pytest.approx(0.6, abs=found.error)
+    assert agreed >= 9

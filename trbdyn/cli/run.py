@@ -36,7 +36,7 @@ WRITTEN: Final = (
     argument(
         "--until",
         "end earlier, when this average of the summary is known within this share, for instance torque=0.01 "
-        "(may be given several times)",
+        "(may be given several times), or the cage's motion has settled within this share of Cpr, cage=0.05",
         "NAME=SHARE",
         action="append",
         default=[],

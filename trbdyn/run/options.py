@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal, get_args
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from trbdyn.base.validation import Model, Number, Whole, unit
 from trbdyn.errors import InputError
 from trbdyn.model.core_table import SETTINGS, setting
 from trbdyn.model.motion import MAX_TIME
 from trbdyn.model.shaft import time_to_turn
+from trbdyn.results.observables.slow_motion import COMPARED, LIMITS
+from trbdyn.run.until import CAGE
 
 if TYPE_CHECKING:
     from trbdyn.model.assembly import Assembly
@@ -75,6 +77,11 @@ OF_ONE_RUN: Final = ("revolutions", "duration", "until", "save_every", "save_gro
 """Fields of `RunOptions` that belong to one run: how long it is, and what it keeps."""
 
 
+def _wanted(until: Any) -> Any:
+    """The name of the cage's motion alone, with the limit of an orbit."""
+    return {CAGE: LIMITS[COMPARED]} if until == CAGE else until
+
+
 class RunOptions(Model):
     """How long to run, how accurately, and what to keep.
 
@@ -87,7 +94,8 @@ class RunOptions(Model):
         Length of the run (s).
     until : dict of str to float
         The run ends earlier, when the 95 % confidence intervals of these averages of the summary are narrow enough: largest half
-        width over the average, by name, for instance ``{"torque": 0.01}``. Empty: it never does.
+        width over the average, by name, for instance ``{"torque": 0.01}``. The name 'cage': when the cage's motion has settled
+        and its orbit is known within this share of Cpr; ``"cage"`` alone stands for 0.05. Empty: it never does.
     save_every : float, optional
         Time between saved records (s); by default that of `trbdyn.run.keeping`, 32 records a turn of the shaft.
     save_groups : sequence of str
@@ -126,7 +134,9 @@ class RunOptions(Model):
 
     revolutions: Annotated[Number, unit("1", gt=0)] | None = None
     duration: Annotated[Number, unit("s", gt=0)] | None = None
-    until: dict[str, Annotated[Number, unit("1", gt=0, lt=1)]] = Field(default_factory=dict)
+    until: Annotated[dict[str, Annotated[Number, unit("1", gt=0, lt=1)]], BeforeValidator(_wanted)] = Field(
+        default_factory=dict
+    )
     save_every: Annotated[Number | None, unit("s", gt=0)] = None
     save_groups: Annotated[tuple[Group, ...], Field(min_length=1)] = GROUPS
     accuracy: Literal["fast", "standard", "reference"] = "standard"

@@ -491,7 +491,7 @@ class Simulation(Displayed, Generic[R]):
         *,
         revolutions: float | None = None,
         duration: float | None = None,
-        until: Mapping[str, float] | None = None,
+        until: Mapping[str, float] | Literal["cage"] | None = None,
         save_every: float | None = None,
         save_groups: Sequence[Group] | None = None,
         output: str | Path | None = None,
@@ -509,10 +509,11 @@ class Simulation(Displayed, Generic[R]):
             How far to go, in turns of the shaft; refused where a torque drives it, as its speed follows from the run.
         duration : float, optional
             How far to go (s); one of both must be given.
-        until : mapping of str to float, optional
+        until : mapping of str to float, or 'cage', optional
             End earlier, when the averages named here are known well enough: largest half width of the 95 % confidence interval
-            over the average, for instance ``{"torque": 0.01, "orbit_rms_over_cpr": 0.05}``, and the motion is known to
-            have settled. `revolutions` or `duration` is then the longest run; one that ends there without it warns.
+            over the average, for instance ``{"torque": 0.01, "orbit_rms_over_cpr": 0.05}``. 'cage': when the motion of the cage
+            is known to have settled, with its orbit within 0.05 Cpr (``{"cage": 0.1}``: within 0.1 Cpr). `revolutions` or
+            `duration` is then the longest run; one that ends there without it warns.
         save_every : float, optional
             Time between records (s). By default a 32nd of a turn of the shaft, but at most 1e-2 s; in a run that would have
             fewer than 200 records a half, a quarter and so on of that, as far as 1e-4 s. ``result.meta["kept"]`` says
@@ -570,7 +571,7 @@ class Simulation(Displayed, Generic[R]):
             limit = "must be given: inputs were given between steps, which a run of the scene alone does not have"
             raise InputError.of("callback_every", None, limit)
         changes: dict[str, Any] = {"revolutions": revolutions, "duration": duration}
-        changes |= {} if until is None else {"until": dict(until)}
+        changes |= {} if until is None else {"until": until if isinstance(until, str) else dict(until)}
         changes |= {} if checkpoint_every is None else {"checkpoint_every": checkpoint_every}
         options = self.options.replace(**changes)
         end = options.end_time(self.subject, self._reached)

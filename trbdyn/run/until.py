@@ -1,4 +1,4 @@
-"""A run that goes on until averages are known as well as was asked for (`Simulation.run` with `until`).
+"""A run that goes on until averages, or the cage's motion, are known as well as was asked for (`Simulation.run` with `until`).
 
 From time to time the averages of the records so far are computed with their confidence intervals (`trbdyn.results.confidence`).
 The run ends when each half width is below the wanted share of its average; there is none as long as the motion is not known to
@@ -21,6 +21,10 @@ from trbdyn.results.fields import contacts
 if TYPE_CHECKING:
     from trbdyn.results.result import Result
 
+CAGE: Final = "cage"
+"""Name of what is none of the averages: the cage's motion, which has settled and whose orbit is known within a share of Cpr."""
+OF_CAGE: Final = "orbit_rms_over_cpr"
+"""Average by which it is judged."""
 FIRST: Final = 0.02
 """Share of the longest run before the first look."""
 GROWTH: Final = 1.125
@@ -34,7 +38,8 @@ def check_wanted(wanted: Mapping[str, float], groups: tuple[str, ...], fields: C
     InputError if a name is none of an average, or what an average needs is not kept or does not exist.
     """
     for name in wanted:
-        check_average(name, "run", "until")
+        if name != CAGE:
+            check_average(name, "run", "until")
         side = next(
             (side for side in reversed(contacts()) if name in (f"{side}_load_mean", f"film_parameter_{side}")), ""
         )
@@ -43,7 +48,7 @@ def check_wanted(wanted: Mapping[str, float], groups: tuple[str, ...], fields: C
             raise InputError.of(
                 ("run", "until"), name, f"needs a contact that this bearing does not have: {contacts()[side]}"
             )
-        row = numbers.TABLE[name]
+        row = numbers.TABLE[OF_CAGE if name == CAGE else name]
         missing = sorted({*numbers.SETTLING, *row.missing(groups)} - set(groups))
         if missing:
             raise InputError.of(("run", "save_groups"), groups, f"must hold {', '.join(missing)} for until = {name}")
@@ -92,7 +97,10 @@ class Until:
     def _is_narrow(self, result: Result, *, said: bool = True) -> bool:
         values = result.summary()
         widths = values.get("confidence") or {}
-        found = {name: _share(values.get(name), widths.get(name)) for name in self.wanted}
+        found = {
+            name: _share(1.0, widths.get(OF_CAGE)) if name == CAGE else _share(values.get(name), widths.get(name))
+            for name in self.wanted
+        }
         if said:
             known = "; ".join(_words(name, share, self.wanted[name]) for name, share in found.items())
             unknown = not all(math.isfinite(share) for share in found.values())
@@ -108,5 +116,8 @@ def _share(value: float | None, width: float | None) -> float:
 
 
 def _words(name: str, share: float, wanted: float) -> str:
+    if name == CAGE:
+        known = f"has settled within {share:.2g} Cpr" if math.isfinite(share) else "is not known to have settled"
+        return f"the cage's motion {known}, {wanted:.2g} Cpr was asked for"
     known = f"is known within {100.0 * share:.2g} %" if math.isfinite(share) else "has no confidence interval"
     return f"{name} {known}, {100.0 * wanted:.2g} % was asked for"

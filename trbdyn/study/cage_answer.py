@@ -28,6 +28,7 @@ from trbdyn.model.roller import Scatter
 from trbdyn.model.scene import Scene
 from trbdyn.model.start import Start
 from trbdyn.results import observables
+from trbdyn.results.observables.slow_motion import SLOW
 from trbdyn.results.result import Result
 from trbdyn.run.options import RunOptions
 from trbdyn.run.simulation import Simulation
@@ -42,9 +43,11 @@ GROUPS: Final = ("cage", "rollers", "peaks", "pocket")
 REST, BETWEEN, LARGE = "rest", "whirl 0.3", "whirl 0.9"
 STARTS: Final = {REST: Start.equal(), BETWEEN: Start.whirl(0.3), LARGE: Start.whirl(0.9)}
 BEFORE_THIRD: Final = 3
-"""Windows of the outer starts before the one between is run, where they do not agree."""
-SLOW: Final = 1000.0
-"""Turns of the cage within which the rollers creep from which on starts are not expected to agree."""
+"""Windows of the outer starts before the one between is run, where they do not agree; 1 where the rollers creep within more turns
+than these windows have, so that a direction is the most that can be told soon.
+"""
+ENOUGH: Final = 4
+"""Windows after which starts that decide, or a direction whose end lies beyond the processor time, need no longer runs."""
 SCATTER: Final = (0.0, 0.2e-6, 1e-6)
 """Ranges of the rollers' diameters that are tried unless told otherwise (m): none; those of the finest rollers; those of ordinary
 ones (ISO 12297, variation within a lot: 0.5 um of grade 0.5, 1 um of grade 1).
@@ -70,7 +73,7 @@ class OfRollers:
     seed : int
         Seed of the diameters.
     found : Compared
-        What the starts tell: agreed, grows, dies, two motions or unknown.
+        What the starts tell: agreed, grows, dies, meets, two motions, start decides or unknown.
     kind : str
         Class of the motion, as `observables.classify` names it: of all starts where they agree, of the one towards which it moves
         where it grows or dies; else 'unknown'.
@@ -82,6 +85,8 @@ class OfRollers:
         Turns of the cage of each run.
     processor_time : float
         Processor time of all runs (s).
+    kinds : tuple of str
+        Classes of the motion in the last window from rest and from a large whirl.
     """
 
     bearing: str
@@ -93,6 +98,7 @@ class OfRollers:
     force: float
     turns: int
     processor_time: float
+    kinds: tuple[str, str] = ("unknown", "unknown")
 
     @property
     def words(self) -> str:
@@ -104,8 +110,16 @@ class OfRollers:
             way = f"the orbit {'grows' if found.verdict == 'grows' else 'shrinks'} by {abs(found.rate):.2g} Cpr in a second"
             when = f"expected there after {found.time_low:.2g} to {found.time_high:.2g} s more"
             return f"{way} towards {found.orbit:.2f} Cpr, where it {does}; {when}"
-        if found.verdict == "two motions":
-            return "two motions are possible: the start decides"
+        if found.verdict == "meets":
+            when = f"expected within {found.time_low:.2g} to {found.time_high:.2g} s more"
+            return f"starts approach each other by {abs(found.rate):.2g} Cpr in a second near {found.orbit:.2f} Cpr; {when}"
+        if found.verdict in ("two motions", "start decides"):
+            both = "; ".join(
+                f"from {start} it {WHIRLS.get(kind, 'moves')}, orbit {end:.2f} Cpr"
+                for start, kind, end in zip((REST, "a large whirl"), self.kinds, found.ends, strict=True)
+            )
+            long = f" for {found.time_low:.2g} s or longer" if found.verdict == "start decides" else ""
+            return f"two motions are possible, the start decides{long}: {both}"
         return f"cannot be told: {found.reason}"
 
 
@@ -192,9 +206,10 @@ def cage_answer(
     """What a cage does in the long run, as soon as it can be told: from starts side by side, with rollers as they are made.
 
     Runs from rest and from a large whirl go on side by side in threads, window by window of 20 turns of the cage, until both
-    have come to the same motion. Where they have not after three windows, a third run from a whirl of 0.3 of the play shows the
-    direction, with its rate. A search ends when the starts agree, or when the processor time is spent; then it gives the
-    direction and a forecast, or the reason why nothing can be told.
+    have come to the same motion. Where they have not, a third run from a whirl of 0.3 of the play shows the direction, with its
+    rate: from the second window on where the rollers creep slowly, else from the fourth. A search ends when the starts agree;
+    when a direction is told whose end lies beyond the processor time; when the rollers creep so slowly that the start decides,
+    and then both motions are told; or when the processor time is spent.
 
     Parameters
     ----------
@@ -320,21 +335,37 @@ class _Search:
     def rows(self, most: float) -> list[OfRollers]:
         """The answer of each bearing within a processor time (s)."""
         runs = {name: self._begun(name) for name in (REST, LARGE)}
+        slowly = any(turns > BEFORE_THIRD * WINDOW for turns in self.creep.values())
         with ThreadPoolExecutor(self.workers) as pool:
-            windows = 0
+            windows, spent = 0, 0.0
             while True:
                 list(pool.map(_Run.go_on, runs.values()))
                 windows += 1
                 found = {name: self._compared(name, runs) for name in self.subject.names}
-                spent = sum(one.spent for one in runs.values())
-                done = all(one.verdict in ("agreed", "two motions") for one in found.values())
-                told = all(one.verdict != "unknown" for one in found.values())
-                slow = any(turns > SLOW for turns in self.creep.values())
-                if windows > 1 and (done or spent + spent / windows > most or (slow and told)):
+                before, spent = spent, sum(one.spent for one in runs.values())
+                left = (most - spent) / (spent - before) * self._length  # bearing time that can still be run
+                if windows > 1 and (
+                    left < self._length or all(self._is_done(one, windows, left) for one in found.values())
+                ):
                     break
-                if windows == BEFORE_THIRD and not done:
+                done = all(one.verdict == "agreed" for one in found.values())
+                if BETWEEN not in runs and not done and windows >= (1 if slowly else BEFORE_THIRD):
                     runs[BETWEEN] = self._begun(BETWEEN)
         return [self._row(name, found[name], runs, spent) for name in self.subject.names]
+
+    @property
+    def _length(self) -> float:
+        """Bearing time of a window (s)."""
+        return WINDOW * 2.0 * math.pi / abs(self.subject.orbit_speed(self.subject.part.start.time))
+
+    @staticmethod
+    def _is_done(found: observables.Compared, windows: int, left: float) -> bool:
+        """Whether longer runs of a bearing are of no use, with a bearing time (s) that can still be run."""
+        if found.verdict in ("agreed", "two motions"):
+            return True
+        if found.verdict == "unknown" or windows < ENOUGH:
+            return False
+        return found.verdict == "start decides" or found.time_low > left
 
     def _begun(self, start: str) -> _Run:
         subject = self.subject
@@ -360,4 +391,5 @@ class _Search:
         force = float(np.max(last.peaks["pocket_force_peak"])) if told else math.nan
         kind = last.cage_motion.kind if told else "unknown"
         turns = max(run.turns for run in runs.values())
-        return OfRollers(name, self.scatter, self.seed, found, kind, hits, force, turns, spent)
+        first, second = (runs[start].last[name].cage_motion.kind for start in (REST, LARGE))
+        return OfRollers(name, self.scatter, self.seed, found, kind, hits, force, turns, spent, (first, second))

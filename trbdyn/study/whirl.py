@@ -2,7 +2,7 @@
 between the speeds where it changes.
 
 What a cage does may depend on how it began. A run is decided when its motion has settled by the rule of all runs
-(`Result.settling`), or when the runs from both starts have come to the same class (`trbdyn.observables.classify`) and orbit; one
+(`Result.settling`), or when the runs from both starts have come to the same motion (`trbdyn.observables.agree`); one
 that is not is made again, four times as long. The class of a cage that creeps towards a whirl over thousands of turns is that of
 its last quarter, and it stands there as not decided; where the creep of the rollers is so slow that no longer run would tell,
 none is made.
@@ -24,8 +24,8 @@ from trbdyn.errors import InputError
 from trbdyn.model.assembly import Assembly, Subject
 from trbdyn.model.scene import Scene
 from trbdyn.model.start import Start
+from trbdyn.results import observables
 from trbdyn.results.assembly import AssemblyResult
-from trbdyn.results.observables import LIMITS
 from trbdyn.results.observables.slow_motion import CREEP_TIMES
 from trbdyn.results.result import Result
 from trbdyn.run.options import RunOptions
@@ -41,8 +41,6 @@ KINDS: Final = ("unknown", "stable", "rocking", "circling", "unstable")
 """Classes, as `trbdyn.observables.classify` names them."""
 TURNS: Final = (40.0, 160.0, 640.0)
 """Turns of the cage after which a run is judged; the next number where it is not decided."""
-AGREE: Final = LIMITS["orbit radius"]
-"""Difference of the orbits of runs from both starts up to which they agree, over the radial play."""
 RECORDS_A_TURN: Final = 32
 GROUPS: Final = ("cage", "rollers", "peaks")
 STARTS: Final = {"equal": Start.equal(), "whirl": Start.whirl(0.9)}
@@ -57,7 +55,14 @@ ABOUT: Final = {
     "message": ("", ""),
 }
 """What is kept of a run."""
-UNKNOWN: Final = {"kind": "unknown", "orbit": np.nan, "hits": np.nan, "impulse": np.nan, "needed": 0.0}
+UNKNOWN: Final = {
+    "kind": "unknown",
+    "orbit": np.nan,
+    "hits": np.nan,
+    "impulse": np.nan,
+    "unknown": np.inf,
+    "needed": 0.0,
+}
 """The same of a run that failed."""
 
 Point = tuple[str, float, float | None]
@@ -82,6 +87,16 @@ def kind_in(number: int, result: Result | AssemblyResult) -> float:
 def orbit_in(number: int, result: Result | AssemblyResult) -> float:
     """Orbit of the cage in a quarter of a run over the radial play (1); of several cages the largest."""
     return max(float(_quarter(one, number).cage_motion.orbit_over_play) for one in result.parts)
+
+
+def orbit_unknown_at_end(result: Result | AssemblyResult) -> float:
+    """How far the mean orbit of the last quarter may be off over the radial play (1); of several cages the largest."""
+    found = []
+    for one in result.parts:
+        when, means = _quarter(one, 3).turn_means()
+        enough = when.size >= observables.LEAST_BLOCKS
+        found.append(observables.mean_unknown(when, means[observables.COMPARED]) if enough else np.inf)
+    return max(found)
 
 
 def hits_at_end(result: Result | AssemblyResult) -> float:
@@ -112,6 +127,7 @@ OBSERVED: Final[Mapping[str, Observable]] = {
     "needed_turns": needed_turns,
     "kind_at_end": partial(kind_in, 3),
     "orbit_at_end": partial(orbit_in, 3),
+    "orbit_unknown_at_end": orbit_unknown_at_end,
     "hits_at_end": hits_at_end,
     "impulse_at_end": impulse_at_end,
 }
@@ -359,10 +375,10 @@ def _row(found: xarray.Dataset) -> dict[str, Any]:
     rattle = {"hits": float(found["hits_at_end"]), "impulse": float(found["impulse_at_end"])}
     told = kind != "unknown" and bool(found["settled_by_rule"])
     needed = float(found["needed_turns"])
-    return {"kind": kind, "orbit": float(found["orbit_at_end"]), **rattle, "settled": told, "needed": needed}
+    orbit, unknown = float(found["orbit_at_end"]), float(found["orbit_unknown_at_end"])
+    return {"kind": kind, "orbit": orbit, "unknown": unknown, **rattle, "settled": told, "needed": needed}
 
 
 def _agree(rows: Sequence[Mapping[str, Any]]) -> bool:
     """Whether runs from both starts, of one length, have come to the same motion."""
-    kinds, orbits = {row["kind"] for row in rows}, [row["orbit"] for row in rows]
-    return len(kinds) == 1 and kinds != {"unknown"} and bool(np.ptp(orbits) <= AGREE)
+    return observables.agree(*([row[name] for row in rows] for name in ("orbit", "unknown", "kind")))

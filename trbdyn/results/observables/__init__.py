@@ -38,6 +38,7 @@ if TYPE_CHECKING:
         LIMITS as LIMITS,
         Compared as Compared,
         MotionSettling as MotionSettling,
+        agree as agree,
         compare_starts as compare_starts,
         motion_settling as motion_settling,
         turn_means as turn_means,

@@ -11,6 +11,8 @@ from typing import Final, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from trbdyn.results.observables.uncertainty import LEAST_BATCHES, half_width
+
 Array = NDArray[np.float64]
 Side = Literal["above", "below", "unknown"]
 
@@ -23,6 +25,8 @@ BOUND: Final = 0.0228
 """Chance that a rate lies above its bound: that of two standard errors, one-sided."""
 MOST_ALIKE: Final = 0.9
 """Largest correlation of a block with the one before that is taken from few of them."""
+ONE_IN_20: Final = 0.05
+"""Chance that the scatter of a longer record is larger than is taken."""
 FACTOR: Final = 2.0
 """Factor within which an exponential approach tells the way and the time that are left; measured on runs that were followed."""
 
@@ -60,6 +64,16 @@ class Drift:
     def bound(self) -> float:
         """Largest rate, either way, that the scatter leaves likely."""
         return abs(self.rate) + student(BOUND, self.freedom) * self.error
+
+    @property
+    def likely_bound(self) -> float:
+        """Largest bound that another record of this length is expected to have, of a quantity that does not drift: its rate by
+        chance is up to two standard errors, and the error that few blocks tell may be too small (chi-square).
+        """
+        from scipy import stats
+
+        small = math.sqrt(self.freedom / float(stats.chi2.ppf(ONE_IN_20, self.freedom)))
+        return (2.0 + student(BOUND, self.freedom)) * small * self.error
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,8 +193,9 @@ def mean_unknown(time: ArrayLike, values: ArrayLike) -> float:
     Returns
     -------
     float
-        Two standard errors of the mean (Student's for few turns), and, where the rate stands out of the scatter, what it changes
-        within the record; in the unit of the values.
+        The half width of `mean_error`, with all that may be slow in the values; of fewer than sixteen values two standard errors
+        (Student's), with what each remembers of the one before; of values that drift these and the range of their blocks. Where
+        the rate stands out of the scatter, what it changes within the record is added. In the unit of the values.
 
     Raises
     ------
@@ -197,9 +212,12 @@ def mean_unknown(time: ArrayLike, values: ArrayLike) -> float:
     t, x = np.asarray(time, dtype=float), np.asarray(values, dtype=float)
     found = drift(t, x)
     moves = abs(found.rate) * float(np.ptp(t)) if found.significant else 0.0
+    if math.isfinite(width := half_width(x)):
+        return width + moves
     left = x - x.mean() - (found.rate * (t - t.mean()) if found.significant else 0.0)
     error = _longer_than_blocks(left) * math.sqrt(float(left @ left) / (x.size - 1) / x.size)
-    return student(BOUND, x.size - 1) * error + moves
+    drifts = float(np.ptp(_blocks(t, x)[1])) if x.size >= LEAST_BATCHES else 0.0
+    return student(BOUND, x.size - 1) * error + max(moves, drifts)
 
 
 def side_of(limit: float, time: ArrayLike, values: ArrayLike) -> Side:

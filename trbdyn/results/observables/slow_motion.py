@@ -16,7 +16,7 @@ from typing import Final, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trbdyn.results.observables.rates import FACTOR, LEAST_BLOCKS, Drift, by_turns, drift, mean_unknown
+from trbdyn.results.observables.rates import FACTOR, LEAST_BLOCKS, Drift, by_turns, drift, forecast, mean_unknown
 from trbdyn.results.observables.signals import settling
 
 Array = NDArray[np.float64]
@@ -31,8 +31,6 @@ CREEP_TIMES: Final = 3.0
 LEAST_GROWTH: Final = 0.1
 """Growth (ln of the whirl amplitude) over the record after the transient from which a whirl counts as growing."""
 GROWS: Final = "grows"
-LONGER: Final = 2.5
-"""Factor of the longest length that is expected to tell: so that nine of ten records are told within the range."""
 KNOWN_TURNS: Final = 24
 """Turns after the transient from which the scatter is known well enough for a longest length."""
 SHORT_MEMORY: Final = 1.1
@@ -65,10 +63,10 @@ class MotionSettling:
     needed : float
         Shortest length of a record that is expected to tell whether the motion has settled, s; nan where it is told already or
         no length is known. Unknown: ten turns of the cage and three times of the creep after the transient, and so long that the
-        rates are known well enough. Drifting: three time scales of the drift more.
+        rates are known well enough. Drifting: until the rate is expected to matter no more (`forecast`).
     needed_high : float
-        Longest length that is expected to be needed, s; nan where none is known: in records that are too short to show scatter,
-        of scatter as slow as the blocks of the record, and of a whirl that grows.
+        Longest length that is expected to be needed, s, in 95 of 100 records; nan where none is known: in records that are too
+        short to show scatter, of scatter as slow as the blocks of the record, and while it drifts.
     growth_rate : float
         Rate of an exponential growth of the whirl, 1/s; 0 where it does not grow so. It does not tell what a whirl grows to.
     """
@@ -223,11 +221,15 @@ def motion_settling(
         needed: float = found.time - first + after,
     ) -> MotionSettling:
         rates = drifts or {}
-        scatters = {name: one for name, one in rates.items() if _share(name, one, length) > 1.0}
-        likely = max((length * _share(name, one, length) ** 2 for name, one in scatters.items()), default=0.0)
-        known = answer != "settled" and when.size >= KNOWN_TURNS
-        known = known and all(one.memory < SHORT_MEMORY for one in scatters.values())
-        high = LONGER * max(needed, 2.0 * after if answer == "unknown" else 0.0, likely) if known else math.nan
+        high = math.nan
+        if (
+            answer == "unknown"
+            and when.size >= KNOWN_TURNS
+            and all(one.memory < SHORT_MEMORY for one in rates.values())
+        ):
+            # what rates may add up to goes down with the square root of the length; half may be cut off as a transient
+            shares = (_share(name, one.likely_bound, length) for name, one in rates.items())
+            high = max(needed, 2.0 * after, found.time - first + length * max(shares, default=0.0) ** 2)
         return MotionSettling(
             answer, found.index, found.time, scale, reason, creep_time, rates, needed, needed_high=high
         )
@@ -241,10 +243,11 @@ def motion_settling(
     moving = _moving(when, means, drifts, horizon)
     if moving:
         name, scale, words = min(moving, key=lambda entry: entry[1])
-        still = float(t[-1]) - first + CREEP_TIMES * scale
-        drifting = result("drifting", f"the {name} {words}, time scale {scale:.2g} s", scale, drifts, still)
         growth = next((1.0 / one for _, one, how in moving if how == GROWS), 0.0)
-        return replace(drifting, growth_rate=growth, needed_high=math.nan if growth else drifting.needed_high)
+        left = 0.0 if growth else _left(when, means, {one[0] for one in moving}, horizon)
+        still = float(t[-1]) - first + min(left, CREEP_TIMES * scale)
+        drifting = result("drifting", f"the {name} {words}, time scale {scale:.2g} s", scale, drifts, still)
+        return replace(drifting, growth_rate=growth)
     if not math.isnan(creep_time) and length < CREEP_TIMES * creep_time:
         return result(
             "unknown",
@@ -255,17 +258,31 @@ def motion_settling(
     if when.size < LEAST_TURNS:
         return result("unknown", f"only {when.size} turns of the cage after the transient", drifts=drifts)
     for name, rate in drifts.items():
-        if _share(name, rate, length) > 1.0:
+        if _share(name, rate.bound, length) > 1.0:
             unit = "Cpc" if name == "roller spacing" else "Cpr"
             size = f"its rate is {rate.rate:.2g} with an error of {rate.error:.1g} {unit} in a second"
-            needed = float(t[-1]) - first  # what the rates may add up to goes down with the square root of the length
-            return result("unknown", f"the {name} scatters too much: {size}", drifts=drifts, needed=needed)
+            memory = "" if rate.memory < SHORT_MEMORY else "; its scatter is as slow as a twelfth of the record"
+            needed = float(t[-1]) - first
+            return result("unknown", f"the {name} scatters too much: {size}{memory}", drifts=drifts, needed=needed)
     return result("settled", "", drifts=drifts, needed=math.nan)
 
 
-def _share(name: str, rate: Drift, length: float) -> float:
-    """What the largest likely rate changes in a time (s), over twice the limit of the quantity (1)."""
-    return rate.bound * length / (2.0 * LIMITS[name])
+def _left(when: Array, means: dict[str, Array], names: Collection[str], horizon: float) -> float:
+    """After how much more time (s), at least, drifts are expected to have become small enough to matter no more within a horizon
+    (s), each as an exponential approach; 0 where rates do not become smaller, or turns are few.
+    """
+    left, half = 0.0, when.size // 2
+    for name in names if half >= LEAST_BLOCKS else ():
+        values = means[name]
+        ratio = abs(drift(when[half:], values[half:]).rate) * horizon / LIMITS[name]
+        scale = forecast(when, values).time_low / math.log(20.0)
+        left = max(left, scale * math.log(max(ratio, 1.0)))
+    return left
+
+
+def _share(name: str, rate: float, length: float) -> float:
+    """What a rate changes in a time (s), over twice the limit of the quantity (1)."""
+    return rate * length / (2.0 * LIMITS[name])
 
 
 def _moving(
@@ -294,7 +311,11 @@ def _matters(size: float, rate: float, horizon: float) -> bool:
 COMPARED: Final = "orbit radius"
 """Quantity by which starts are compared."""
 MOVED: Final = 0.02
-"""Way of the middle start within what is judged from which on a direction is told, in units of Cpr."""
+"""Way of a start within what is judged from which on a direction is told, in units of Cpr."""
+SLOW: Final = 1000.0
+"""Turns of the cage within which the rollers creep from which on starts are not expected to agree: the start decides."""
+NO_WHIRL: Final = frozenset({"stable", "rocking"})
+"""Classes of a cage that does not circle: a cage that hangs still and one that rocks by as much as the limit are one motion."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -303,25 +324,32 @@ class Compared:
 
     Attributes
     ----------
-    verdict : {"agreed", "grows", "dies", "two motions", "unknown"}
+    verdict : {"agreed", "grows", "dies", "meets", "two motions", "start decides", "unknown"}
         Agreed: all starts have come to the same motion. Grows, dies: they have not, and the start between the two others moves
-        towards the larger or the smaller one. Two motions: the outer ones have settled apart, and the start between them has gone
-        to one of them, so that the start decides. Unknown: none of these.
+        towards the larger or the smaller one, or it is there already and the other follows. Meets: a larger one moves down and a
+        smaller one up. Two motions: the
+        outer ones have settled apart, and the start between them has gone to one of them, so that the start decides. Start
+        decides: the rollers creep within more than `SLOW` turns, and each start keeps its own motion for a time that is told.
+        Unknown: none of these.
     orbit : float
-        Agreed: the orbit of the cage, mean of the starts. Grows, dies: that of the start towards which it moves. Over Cpr.
+        Agreed: the orbit of the cage, mean of the starts. Grows, dies: that of the start towards which it moves. Meets: between
+        these two. Over Cpr.
     error : float
         Largest difference of a start from it, or half of the way that is left (Cpr).
     rate : float
-        Rate of the start between, Cpr in a second; nan where there is none.
+        Rate of the start that shows the direction, Cpr in a second (meets: of the distance); nan where there is none.
     rate_error : float
         Its standard error.
     time_low, time_high : float
-        Grows, dies: how much longer the way is expected to take, s.
+        Grows, dies, meets: how much longer the way is expected to take, s. Start decides: `time_low` is the time within which no
+        start is expected to move by more than the limit of an orbit.
     reason : str
         Unknown: why.
+    ends : tuple of float
+        Orbits of the outer starts in their last window, from rest and from a large whirl, over Cpr.
     """
 
-    verdict: Literal["agreed", "grows", "dies", "two motions", "unknown"]
+    verdict: Literal["agreed", "grows", "dies", "meets", "two motions", "start decides", "unknown"]
     orbit: float
     error: float
     rate: float = math.nan
@@ -329,6 +357,35 @@ class Compared:
     time_low: float = math.nan
     time_high: float = math.nan
     reason: str = ""
+    ends: tuple[float, float] = (math.nan, math.nan)
+
+
+def agree(orbits: Collection[float], unknown: Collection[float], kinds: Collection[str]) -> bool:
+    """Whether runs from several starts have come to one motion.
+
+    Parameters
+    ----------
+    orbits : collection of float
+        Mean orbit radius at the end of each, over Cpr.
+    unknown : collection of float
+        How far each mean may be off (`mean_unknown`), over Cpr.
+    kinds : collection of str
+        Classes of their motion: one class, or only such that do not circle.
+
+    Returns
+    -------
+    bool
+        All orbits lie within the limit of an orbit, and each is known within it.
+
+    Examples
+    --------
+    >>> from trbdyn import observables
+    >>> observables.agree([0.10, 0.12], [0.01, 0.02], ["stable", "rocking"])
+    True
+    """
+    alike = "unknown" not in kinds and (len(set(kinds)) <= 1 or set(kinds) <= NO_WHIRL)
+    limit = LIMITS[COMPARED]
+    return alike and max(orbits) - min(orbits) <= limit and max(unknown) <= limit
 
 
 def compare_starts(
@@ -346,13 +403,14 @@ def compare_starts(
     outer : pair of pairs of arrays
         Times (s) and orbit radius over Cpr by turns of the cage: of the run from rest and of the one from a large whirl.
     between : pair of arrays, optional
-        The same of the start between; its first window is left out as a transient.
+        The same of the start between.
     window : int
-        Turns of the cage in a window: the last window of each run is compared.
+        Turns of the cage in a window. The last window of each run is compared, or, where this scatters too much, the last half.
+        The first window is a transient, from which no rate is taken.
     creep_turns : float
         Time of the rollers' creep in turns of the cage; nan where it is not known.
     kinds : collection of str, optional
-        Classes of the motion in the last window of the outer runs: only those of one class agree.
+        Classes of the motion in the last window of the outer runs: only those of one class agree, or that both do not circle.
 
     Returns
     -------
@@ -367,34 +425,57 @@ def compare_starts(
     >>> found.verdict, round(found.orbit, 2)
     ('agreed', 0.1)
     """
-    limit = LIMITS[COMPARED]
-    ends = [float(values[-window:].mean()) for _, values in outer]
-    unknown = [mean_unknown(when[-window:], values[-window:]) for when, values in outer]
+    limit, size = LIMITS[COMPARED], min(values.size for _, values in outer)
+    for length in dict.fromkeys((window, max(window, size // 2))):
+        means = [float(values[-length:].mean()) for _, values in outer]
+        unknown = [mean_unknown(when[-length:], values[-length:]) for when, values in outer]
+        if agree(means, unknown, kinds):
+            error = 0.5 * abs(means[1] - means[0]) + max(unknown)
+            return Compared("agreed", 0.5 * sum(means), error, ends=(means[0], means[1]))
+    ends = (float(outer[0][1][-window:].mean()), float(outer[1][1][-window:].mean()))
     middle, apart = 0.5 * sum(ends), abs(ends[1] - ends[0])
-    if apart <= limit and max(unknown) <= limit and len(set(kinds)) <= 1:
-        return Compared("agreed", middle, 0.5 * apart + max(unknown))
     creeps = "" if math.isnan(creep_turns) else f"; the rollers creep within {creep_turns:.3g} turns of the cage"
-    if between is None or between[1].size < 2 * window:
-        reason = f"from rest the orbit is {ends[0]:.2f} Cpr, from a large whirl {ends[1]:.2f} Cpr{creeps}"
-        return Compared("unknown", middle, 0.5 * apart, reason=reason)
-    when, values = between[0][window:], between[1][window:]
-    found = drift(when, values)
-    now = float(values[-window:].mean())
-    moved = abs(found.rate) * float(np.ptp(when))
-    rates = (found.rate, found.error)
-    near = min(range(2), key=lambda k: abs(now - ends[k]))
-    stand = all(not drift(when[-2 * window :], values[-2 * window :]).significant for when, values in outer)
-    if abs(now - ends[near]) <= limit and apart > limit and stand:
-        turns = min(values.size for _, values in outer)
-        if not math.isnan(creep_turns) and turns >= CREEP_TIMES * creep_turns:
-            return Compared("two motions", ends[near], 0.5 * apart, *rates)
-    if found.significant and moved > MOVED:
-        to = max(ends) if found.rate > 0.0 else min(ends)
-        way = max(abs(to - now), limit)
+    classes = "" if len(set(kinds)) <= 1 else f"; one of them is {', the other '.join(sorted(set(kinds)))}"
+    said = f"from rest the orbit is {ends[0]:.2f} Cpr, from a large whirl {ends[1]:.2f} Cpr{classes}"
+    if between is None or between[1].size < 2 * window or size < 2 * window:
+        return Compared("unknown", middle, 0.5 * apart, reason=f"{said}{creeps}", ends=ends)
+    rates = [drift(when[window:], values[window:]) for when, values in (*outer, between)]
+    spans = [float(np.ptp(when[window:])) for when, _ in (*outer, between)]
+    moves = [
+        math.copysign(1.0, one.rate) if one.significant and abs(one.rate) * span > MOVED else 0.0
+        for one, span in zip(rates, spans, strict=True)
+    ]
+    now = float(between[1][-window:].mean())
+    places = (*ends, now)
+    near = min(ends, key=lambda end: abs(now - end))
+    gone = abs(now - near) <= limit < apart
+    if gone and moves[0] == moves[1] == 0.0 and size >= CREEP_TIMES * creep_turns:
+        return Compared("two motions", near, 0.5 * apart, rates[2].rate, rates[2].error, ends=ends)
+
+    def towards(
+        verdict: Literal["grows", "dies", "meets"], to: float, way: float, rate: float, error: float
+    ) -> Compared:
         # between a constant rate and an exponential approach that ends within the limit
-        left = way / abs(found.rate) * math.sqrt(max(math.log(way / limit), 1.0))
-        verdict: Literal["grows", "dies"] = "grows" if found.rate > 0.0 else "dies"
-        return Compared(verdict, to, 0.5 * abs(to - now), *rates, left / FACTOR, left * FACTOR)
-    still = f"a start between them moves by {found.rate:+.2g} with an error of {found.error:.1g} Cpr in a second"
-    reason = f"from rest the orbit is {ends[0]:.2f} Cpr, from a large whirl {ends[1]:.2f} Cpr, and {still}{creeps}"
-    return Compared("unknown", middle, 0.5 * apart, *rates, reason=reason)
+        left = max(way, limit) / abs(rate) * math.sqrt(max(math.log(max(way, limit) / limit), 1.0))
+        return Compared(verdict, to, 0.5 * way, rate, error, left / FACTOR, left * FACTOR, ends=ends)
+
+    ups, downs = ([k for k in range(3) if moves[k] == way] for way in (1.0, -1.0))
+    if ups and downs and (low := max(places[k] for k in ups)) < (high := min(places[k] for k in downs)):
+        one, other = rates[max(ups, key=lambda k: places[k])], rates[min(downs, key=lambda k: places[k])]
+        closes = other.rate - one.rate
+        return towards("meets", 0.5 * (low + high), high - low, closes, math.hypot(one.error, other.error))
+    if (ups or downs) and not (ups and downs):
+        to = max(places) if ups else min(places)
+        # one that moves alone tells a direction only where the start between moves, too, or has gone to the other side
+        if moves[2]:
+            return towards("grows" if ups else "dies", to, abs(to - now), rates[2].rate, rates[2].error)
+        if gone and (alone := [k for k in (0, 1) if moves[k] and abs(places[k] - now) > limit]):
+            one, place = rates[alone[0]], places[alone[0]]
+            return towards("grows" if ups else "dies", to, abs(to - place), one.rate, one.error)
+    if creep_turns > SLOW and apart > limit:
+        keeps = limit / max(max(one.bound for one in rates), 1e-300)
+        if keeps > max(spans):
+            return Compared("start decides", middle, 0.5 * apart, time_low=keeps, ends=ends)
+    how = f"a start between them moves by {rates[2].rate:+.2g} with an error of {rates[2].error:.1g} Cpr in a second"
+    reason = f"{said}, and {how}{creeps}"
+    return Compared("unknown", middle, 0.5 * apart, rates[2].rate, rates[2].error, reason=reason, ends=ends)
