@@ -218,9 +218,10 @@ def whole_of(python: str, job: dict[str, Any], turns: float) -> float:
     return time.perf_counter() - began
 
 
-def run_case(report: common.Report, name: str, builds: dict[str, tuple[str, Asked]], ruler: Asked, quick: bool) -> None:
+def run_case(report: common.Report, name: str, builds: dict[str, tuple[str, Asked]], ruler: Asked) -> None:
     """All points of a case, builds in turns."""
-    case = states.load_case(name).first(2 if quick else 5)
+    quick = report.options.quick
+    case = states.load_case(name).first(1 if report.options.smoke else 2 if quick else 5)
     references = references_of(case)
     turns = 0.05 * case.definition.batch * (1.0 if quick else 4.0)
     for scale in QUICK_SCALES if quick else SCALES:
@@ -283,6 +284,8 @@ def main(arguments: Sequence[str] | None = None) -> common.Report:
     parser.add_argument("--other", type=Path, metavar="PYTHON", help="Python of another build's environment")
     parser.add_argument("--cases", nargs="+", choices=CASES, default=list(CASES))
     options = parser.parse_args(arguments)
+    if options.smoke:
+        options.cases = options.cases[:1]
     report = common.Report("front", options, COLUMNS)
     report.inputs = {"cases": options.cases, "levels": LEVELS, "yardstick": "yardstick.c, cc -O2"}
     pythons = {"this": sys.executable} | ({"other": str(options.other.absolute())} if options.other else {})
@@ -291,7 +294,7 @@ def main(arguments: Sequence[str] | None = None) -> common.Report:
         ruler = yardstick(Path(folder))
         try:
             for name in options.cases:
-                run_case(report, name, builds, ruler, options.quick)
+                run_case(report, name, builds, ruler)
                 run_whole(report, name, builds, ruler)
         finally:
             for asked in (ruler, *(worker for _, worker in builds.values())):

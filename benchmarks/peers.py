@@ -80,7 +80,7 @@ def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
     if difference > 1e-9:
         raise SystemExit("the NumPy model does not give what the core gives")
     measured: list[tuple[Method, list[Point], str | None]] = []
-    for method in [*own(bench), *alternatives(bench, options.quick)]:
+    for method in [*own(bench), *alternatives(bench, options.quick, options.smoke)]:
         began = clock.perf_counter()
         points, failure = attempt(bench, method)
         measured.append((method, points, failure))

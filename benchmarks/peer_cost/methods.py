@@ -29,7 +29,7 @@ def own(bench: Bench) -> list[Method]:
     standard = RunOptions().integrator
     every = typing.get_args(RunOptions.model_fields["integrator"].annotation)
     out = []
-    for name in (standard, standard + EXACT, *(name for name in every if name != standard)):
+    for name in (standard, standard + EXACT, *(name for name in every if name not in (standard, "multirate"))):
         explicit = name == "erk"
         factors = [10.0, 1.0, 0.1] if explicit else [30.0, 10.0, 3.0, 1.0, 0.3, 0.1]
         out.append(
@@ -67,10 +67,14 @@ def _handed(quick: bool) -> list[Peer]:
     return [(name + OURS, *rest) for name, *rest in peers]
 
 
-def alternatives(bench: Bench, quick: bool) -> list[Method]:
-    """The packages by themselves, then with our Jacobian. One that is not installed is among them: its run says why it fails."""
+def alternatives(bench: Bench, quick: bool, smoke: bool = False) -> list[Method]:
+    """The packages by themselves, then with our Jacobian; `smoke`: the fastest of each. One that is not installed is among them: its run says why
+    it fails.
+    """
     out = []
     for name, run, factors, slow in [*_packages(quick), *_handed(quick)]:
+        if smoke and not name.startswith("SciPy LSODA"):
+            continue
         ours = name.endswith(OURS)
         more = sorted({100.0, *factors, 0.3, 0.1}, reverse=True) if ours and not quick else factors
         out.append(Method(name, "numpy", partial(bench.peer, run=run), more, slow=slow))
