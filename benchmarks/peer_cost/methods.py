@@ -68,8 +68,8 @@ def _handed(quick: bool) -> list[Peer]:
 
 
 def alternatives(bench: Bench, quick: bool, smoke: bool = False) -> list[Method]:
-    """The packages by themselves, then with our Jacobian; `smoke`: the fastest of each. One that is not installed is among them: its run says why
-    it fails.
+    """The packages by themselves, then with our Jacobian; `smoke`: the fastest of each. One that is not installed is among
+    them: its run says why it fails.
     """
     out = []
     for name, run, factors, slow in [*_packages(quick), *_handed(quick)]:
