@@ -357,7 +357,8 @@ def test_each_average_is_judged_by_itself(settling: str) -> None:
 @pytest.mark.parametrize("settling", ["settled", "unknown", "drifting"])
 def test_the_motion_of_the_cage_is_waited_for(settling: str) -> None:
     """By its name alone, or with the share of Cpr within which its orbit must be known."""
-    wanted = trb.RunOptions(revolutions=1.0, until="cage").until
+    short: Any = "cage"
+    wanted = trb.RunOptions(revolutions=1.0, until=short).until
     assert wanted == {"cage": observables.LIMITS["orbit radius"]}
     for share, known in ((wanted["cage"], settling == "settled"), (1e-4, False)):
         looks = Until({"cage": share}, 1000)

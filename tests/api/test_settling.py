@@ -356,7 +356,9 @@ def test_starts_that_move_towards_each_other_or_apart() -> None:
     apart = obs.compare_starts(
         (whirling(lambda t: 0.3 - 0.03 * t), high), whirling(lambda t: 0.4 + 0.03 * t), window=20
     )
-    assert apart.verdict == "unknown"
+    assert apart.verdict == "two motions"
+    beyond = obs.compare_starts((up, high), whirling(lambda t: 0.3 - 0.03 * t, 60), window=20)
+    assert beyond.verdict == "unknown"  # the smaller one grows beyond where the other comes from
 
 
 def test_starts_that_scatter_agree_over_a_longer_part() -> None:

@@ -47,7 +47,9 @@ BEFORE_THIRD: Final = 3
 than these windows have, so that a direction is the most that can be told soon.
 """
 ENOUGH: Final = 4
-"""Windows after which starts that decide, or a direction whose end lies beyond the processor time, need no longer runs."""
+"""Windows after which starts that do not agree need no longer runs: two motions, or a direction whose end lies beyond the
+processor time.
+"""
 SCATTER: Final = (0.0, 0.2e-6, 1e-6)
 """Ranges of the rollers' diameters that are tried unless told otherwise (m): none; those of the finest rollers; those of ordinary
 ones (ISO 12297, variation within a lot: 0.5 um of grade 0.5, 1 um of grade 1).
@@ -361,11 +363,10 @@ class _Search:
     @staticmethod
     def _is_done(found: observables.Compared, windows: int, left: float) -> bool:
         """Whether longer runs of a bearing are of no use, with a bearing time (s) that can still be run."""
-        if found.verdict in ("agreed", "two motions"):
+        if found.verdict == "agreed":
             return True
-        if found.verdict == "unknown" or windows < ENOUGH:
-            return False
-        return found.verdict == "start decides" or found.time_low > left
+        told = found.verdict in ("two motions", "start decides") or found.time_low > left
+        return windows >= ENOUGH and told
 
     def _begun(self, start: str) -> _Run:
         subject = self.subject

@@ -328,7 +328,8 @@ class Compared:
         Agreed: all starts have come to the same motion. Grows, dies: they have not, and the start between the two others moves
         towards the larger or the smaller one, or it is there already and the other follows. Meets: a larger one moves down and a
         smaller one up. Two motions: the
-        outer ones have settled apart, and the start between them has gone to one of them, so that the start decides. Start
+        outer ones have settled apart, and the start between them has gone to one of them; or a smaller one moves down and a
+        larger one up. So the start decides. Start
         decides: the rollers creep within more than `SLOW` turns, and each start keeps its own motion for a time that is told.
         Unknown: none of these.
     orbit : float
@@ -460,10 +461,16 @@ def compare_starts(
         return Compared(verdict, to, 0.5 * way, rate, error, left / FACTOR, left * FACTOR, ends=ends)
 
     ups, downs = ([k for k in range(3) if moves[k] == way] for way in (1.0, -1.0))
-    if ups and downs and (low := max(places[k] for k in ups)) < (high := min(places[k] for k in downs)):
-        one, other = rates[max(ups, key=lambda k: places[k])], rates[min(downs, key=lambda k: places[k])]
-        closes = other.rate - one.rate
-        return towards("meets", 0.5 * (low + high), high - low, closes, math.hypot(one.error, other.error))
+    if ups and downs:
+        low, high = max(ups, key=lambda k: places[k]), min(downs, key=lambda k: places[k])
+        one, other, way = rates[low], rates[high], places[high] - places[low]
+        if way > 0.0:
+            error = math.hypot(one.error, other.error)
+            return towards("meets", 0.5 * (places[low] + places[high]), way, other.rate - one.rate, error)
+        first = [float(values[window : 2 * window].mean()) for _, values in (*outer, between)]
+        if max(first[k] for k in downs) < min(first[k] for k in ups):
+            # what was smaller shrinks and what was larger grows: a motion that nothing keeps lies between
+            return Compared("two motions", near, 0.5 * apart, rates[2].rate, rates[2].error, ends=ends)
     if (ups or downs) and not (ups and downs):
         to = max(places) if ups else min(places)
         # one that moves alone tells a direction only where the start between moves, too, or has gone to the other side
