@@ -11,7 +11,9 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn.model.drawn.opened import library
+from trbdyn.model.drawn.corners import depth_in, edges_of, is_corner, radius_of
+from trbdyn.model.drawn.facets import Facet
+from trbdyn.model.drawn.opened import gmsh_model, library
 from trbdyn.model.drawn.read import read_cage
 
 try:
@@ -120,3 +122,79 @@ def test_what_does_not_belong_together_is_refused(rig: trb.Bearing, lands: Path,
         trb.Cage.from_step(cut, rig)
     with pytest.raises(trb.InputError, match="tolerance"):
         trb.Cage.from_step(lands, rig, tolerance=1.0)
+
+
+def hollow(radius: float, bar: float, wall: float, strips: int = 24) -> list[Facet]:
+    """A corner of a window between a bar at t = bar and a wall at the small ends at z = wall, rounded, as strips along n (m)."""
+    turned = np.linspace(0.0, 0.5 * math.pi, strips + 1)
+    t, z = bar - radius * (1.0 - np.cos(turned)), wall + radius * (1.0 - np.sin(turned))
+    found = []
+    for k in range(strips):
+        corners = np.array(
+            [(-2e-3, t[k], z[k]), (2e-3, t[k], z[k]), (2e-3, t[k + 1], z[k + 1]), (-2e-3, t[k + 1], z[k + 1])]
+        )
+        middle = 0.5 * (turned[k] + turned[k + 1])
+        found.append(Facet(corners, np.array([0.0, -math.cos(middle), math.sin(middle)]), 1))
+    return found
+
+
+@pytest.mark.parametrize(("radius", "chamfer"), [(0.3e-3, 0.5e-3), (0.5e-3, 0.5e-3), (0.8e-3, 0.5e-3), (0.3e-3, 0.0)])
+def test_a_corner_up_to_the_chamfer_is_free_of_the_roller(radius: float, chamfer: float) -> None:
+    """A roller that touches bar and wall is in the corner by (sqrt(2) - 1) times what the radius is above the chamfer: both
+    roundings have their centres on the line at 45 degrees."""
+    bearing = trb.cases.bearing_nj210()
+    edges = edges_of(bearing, chamfer)
+    facets = hollow(radius, 0.5 * bearing.roller.diameter, bearing.geometry.small_end_station)
+    expected = (math.sqrt(2.0) - 1.0) * max(radius - chamfer, 0.0)
+    assert depth_in(facets, edges, 1e-3) == pytest.approx(expected, abs=4e-6)
+    points, normals = np.array([f.corners.mean(axis=0) for f in facets]), np.array([f.normal for f in facets])
+    length = bearing.roller.effective_length
+    assert is_corner(points, normals, length)
+    assert radius_of(points, normals) == pytest.approx(radius, rel=0.01)
+    assert not is_corner(points, -normals, length)  # round outwards
+    assert not is_corner(points + np.array([0.0, 0.0, 0.5 * length]), normals, length)  # in the middle of a bar
+    assert not is_corner(points[:8], normals[:8], length)  # a bar with a round side
+
+
+@pytest.mark.slow
+def test_rounded_corners_of_a_machined_cage(drawings: ModuleType, rig: trb.Bearing, tmp_path: Path) -> None:
+    """The chamfer of the 30310's rollers, 0.5 mm, follows from their lengths: corners of 0.3 mm change no play, those of 0.8 mm
+    are refused in words of what can be given."""
+    path = drawings.write("machined", rig, tmp_path / "small.step", corner=0.3e-3)
+    cage = trb.Cage.from_step(path, rig, tolerance=1e-5)
+    assert cage.play_circumferential == pytest.approx(0.12e-3, abs=2e-6)
+    assert cage.play_axial == pytest.approx(0.4e-3, abs=5e-6)  # the wall begins 1 mm off the apex of the end's sphere
+    path = drawings.write("machined", rig, tmp_path / "large.step", corner=0.8e-3)
+    with pytest.raises(trb.FileError, match=r"radius 0\.8 mm .* give the roller's chamfer"):
+        trb.Cage.from_step(path, rig, tolerance=1e-5)
+    cage = trb.Cage.from_step(path, rig, tolerance=1e-5, chamfer=0.8e-3)
+    assert cage.play_circumferential == pytest.approx(0.12e-3, abs=2e-6)
+
+
+def test_a_wrong_unit_is_named(rig: trb.Bearing, tmp_path: Path) -> None:
+    """A cage of 87 mm that is 1/25.4 or 25.4 times as large."""
+    for size, words in (
+        (87.0 / 25.4, "are inches, and the file says millimetres"),
+        (87.0 * 25.4, "are millimetres, and"),
+    ):
+        path = tmp_path / f"{size:.0f}.step"
+        with gmsh_model() as gmsh:
+            gmsh.model.occ.addBox(0.0, 0.0, 0.0, size, size, 0.2 * size)
+            gmsh.model.occ.synchronize()
+            gmsh.write(str(path))
+        with pytest.raises(trb.FileError, match=words.replace("are ", "seem to be ")):
+            trb.Cage.from_step(path, rig)
+    with pytest.raises(trb.InputError, match="a STEP file tells its unit"):
+        trb.Cage.from_step(path, rig, unit="inch")
+    for number, unit, right in ((87.0 / 25.4, "mm", "inch"), (87.0, "inch", "mm"), (0.087, "mm", "m")):
+        corners = "\n".join(f"vertex {x} {y} 0" for x, y in ((0.0, 0.0), (number, 0.0), (0.0, number)))
+        path = tmp_path / "cage.stl"
+        path.write_text(f"solid a\nfacet normal 0 0 1\nouter loop\n{corners}\nendloop\nendfacet\n")
+        with pytest.raises(trb.InputError, match=f"try '{right}'"):
+            trb.Cage.from_step(path, rig, unit=unit)
+
+
+@pytest.mark.parametrize("chamfer", [-1e-4, 4e-3])
+def test_a_chamfer_that_no_roller_has(chamfer: float, rig: trb.Bearing, tmp_path: Path) -> None:
+    with pytest.raises(trb.InputError, match="chamfer"):
+        trb.Cage.from_step(tmp_path / "cage.step", rig, chamfer=chamfer)

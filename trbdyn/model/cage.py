@@ -98,6 +98,7 @@ class Cage(Model):
         tolerance: float = 1e-6,
         unit: str = "mm",
         roller_plane: float | None = None,
+        chamfer: float | None = None,
     ) -> Cage:
         """A cage as drawn: its pockets with all faces that a roller can touch, plays, mass, centre and moments of inertia.
 
@@ -116,21 +117,25 @@ class Cage(Model):
         tolerance : float
             Largest distance between a curved face and its facets (m).
         unit : {'mm', 'm', 'inch'}
-            Unit of an STL file.
+            Unit of an STL file; a STEP file tells its own.
         roller_plane : float, optional
             Height of the roller-centre plane above the cage's centre of volume, positive towards the large ends (m); needed where
             no wall faces the large ends.
+        chamfer : float, optional
+            Radius by which the edges of the roller's ends are rounded (m); half of total less effective length by default.
+            Corners of a window up to this radius are free of the roller.
 
         Raises
         ------
         InputError
             If an argument is not allowed, or the cage does not belong to the bearing.
         FileError
-            If the file cannot be read, or what is in it is not understood; the message names the face.
+            If the file cannot be read, is drawn in another unit than it says, or what is in it is not understood, as a corner of
+            a window that the end of a roller would meet; the message names the face.
         ImportError
             If the extra is not installed.
         """
-        drawn = read_cage(path, bearing, tolerance=tolerance, unit=unit, roller_plane=roller_plane)
+        drawn = read_cage(path, bearing, tolerance=tolerance, unit=unit, roller_plane=roller_plane, chamfer=chamfer)
         density = (material or bearing.material).density
         if density is None:
             raise InputError.of(("material", "density"), None, "must be given: the cage's mass follows from it (kg/m3)")

@@ -184,7 +184,7 @@ def _drawn(bearing: Bearing, given: object) -> Cage:
     table: Table = dict(given) if isinstance(given, Mapping) else {"file": given}
     if not isinstance(file := table.pop("file", None), str):
         raise InputError.of(("drawing", "file"), file, "must be the path of a STEP or STL file")
-    check_names(table, ("tolerance", "unit", "roller_plane"), ("drawing",))
+    check_names(table, ("tolerance", "unit", "roller_plane", "chamfer"), ("drawing",))
     return Cage.from_step(file, bearing, material=bearing.cage.material, **table)
 
 

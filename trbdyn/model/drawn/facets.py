@@ -314,3 +314,16 @@ def _joined(one: list[Corner], other: list[Corner]) -> list[Corner] | None:
             both = _without_idle(np.array(one[i + 1 :] + one[: i + 1] + (other[j + 1 :] + other[: j + 1])[1:-1]), True)
             return list(map(tuple, both.tolist())) if len(both) <= MAX_VERTICES and _is_convex(both) else None
     return None
+
+
+def outside_of(facet: Facet, feet: FloatArray) -> FloatArray:
+    """Distance of points of a facet's plane to it."""
+    best = np.full(len(feet), np.inf)
+    inside = np.ones(len(feet), dtype=bool)
+    for start, end in zip(facet.corners, np.roll(facet.corners, -1, axis=0), strict=True):
+        side = end - start
+        off = feet - start
+        inside &= np.cross(side, off) @ facet.normal >= 0.0
+        share = np.clip(off @ side / (side @ side), 0.0, 1.0)
+        best = np.minimum(best, np.linalg.norm(off - share[:, None] * side, axis=1))
+    return np.where(inside, 0.0, best)

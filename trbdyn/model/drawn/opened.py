@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import threading
 from collections.abc import Iterable, Iterator
@@ -25,6 +26,13 @@ MM: Final = 1e-3
 """Gmsh converts every file to mm, whatever its unit, and this is that in m."""
 STEP_ENDINGS: Final = (".step", ".stp", ".p21")
 UNITS: Final = {"m": 1.0, "mm": 1e-3, "inch": 25.4e-3}
+STEP_UNITS: Final = {
+    25.4: ("inches", "millimetres"),
+    1.0 / 25.4: ("millimetres", "inches"),
+    1e3: ("metres", "millimetres"),
+    1e-3: ("millimetres", "metres"),
+}
+"""By which factor a drawing is too small, and what its numbers and its file say then."""
 SIX_NODES: Final = 9
 """Gmsh's number of a triangle with nodes at its corners and the middles of its edges."""
 CLOSED: Final = 1e-6
@@ -162,9 +170,11 @@ def _distance_to_lines(points: FloatArray, first: FloatArray, last: FloatArray) 
 
 
 @contextmanager
-def opened(path: str | os.PathLike[str], *, mesh_size: float, unit: str = "mm") -> Iterator[Drawing]:
+def opened(
+    path: str | os.PathLike[str], *, mesh_size: float, unit: str = "mm", usual: float | None = None
+) -> Iterator[Drawing]:
     """A drawing of one solid, as long as the context lasts: a STEP file, or an STL file, which does not tell its unit. Triangles
-    of `mesh_size` (m) cover its faces roughly.
+    of `mesh_size` (m) cover its faces roughly. With the `usual` diameter of what is drawn (m), a wrong unit is refused.
     """
     ending = file_path(path, "drawing").suffix.lower()
     if ending not in (*STEP_ENDINGS, ".stl"):
@@ -172,12 +182,14 @@ def opened(path: str | os.PathLike[str], *, mesh_size: float, unit: str = "mm") 
     if unit not in UNITS:
         raise InputError.of("unit", unit, f"must be one of {', '.join(UNITS)}")
     if ending == ".stl":
-        yield _stl(checked_file(path, "STL", field="drawing"), UNITS[unit])
+        yield _stl(checked_file(path, "STL", field="drawing"), unit, usual)
         return
+    if unit != "mm":
+        raise InputError.of("unit", unit, "must be left out: a STEP file tells its unit")
     file = checked_file(path, "STEP", field="drawing")
     _check_step(file)
     with gmsh_model() as gmsh:
-        yield _step(gmsh, str(file), mesh_size)
+        yield _step(gmsh, str(file), mesh_size, usual)
 
 
 def _check_step(file: Path) -> None:
@@ -202,7 +214,7 @@ def _check_size(gmsh: Any, path: str, mesh_size: float) -> None:
         )
 
 
-def _step(gmsh: Any, path: str, mesh_size: float) -> Drawing:
+def _step(gmsh: Any, path: str, mesh_size: float, usual: float | None) -> Drawing:
     try:
         gmsh.model.occ.importShapes(path)
         gmsh.model.occ.synchronize()
@@ -212,6 +224,13 @@ def _step(gmsh: Any, path: str, mesh_size: float) -> Drawing:
     if len(solids) != 1:
         raise FileError(f"{path}: has {len(solids)} solids; a cage is one: join its parts, or save it alone")
     occ = gmsh.model.occ
+    box = np.array(gmsh.model.getBoundingBox(-1, -1)).reshape(2, 3)
+    if (off := _wrong_unit(MM * float(np.ptp(box, axis=0).max()), usual, STEP_UNITS)) is not None:
+        meant, said = STEP_UNITS[off]
+        raise FileError(
+            f"{path}: is {_times(1.0 / off)} as large as a cage of the bearing: its numbers seem to be {meant}, and the file "
+            f"says {said}; save it again with the unit {meant}"
+        )
     _check_size(gmsh, path, mesh_size)
     tags = [tag for _, tag in gmsh.model.getEntities(2)]
     triangles = _rough(gmsh, path, tags, mesh_size)
@@ -231,8 +250,24 @@ def _step(gmsh: Any, path: str, mesh_size: float) -> Drawing:
     return Drawing(path, faces, volume, centre, inertia, surfaces)
 
 
-def _stl(path: Path, scale: float) -> Drawing:
-    triangles = read_triangles(path, scale)
+def _wrong_unit(size: float, usual: float | None, factors: Iterable[float]) -> float | None:
+    """By which of some factors a size (m) must be multiplied to be the usual one; None where it is near enough as it is."""
+    if usual is None or 0.4 < size / usual < 2.5:
+        return None
+    best = min(factors, key=lambda factor: abs(math.log(factor * size / usual)))
+    return best if 0.6 < best * size / usual < 1.7 else None
+
+
+def _times(ratio: float) -> str:
+    return f"{ratio:g} times" if ratio > 1.0 else f"1/{1.0 / ratio:g}"
+
+
+def _stl(path: Path, unit: str, usual: float | None) -> Drawing:
+    triangles = read_triangles(path, UNITS[unit])
+    units = {other / UNITS[unit]: name for name, other in UNITS.items() if name != unit}
+    if (off := _wrong_unit(float(np.ptp(triangles.reshape(-1, 3), axis=0).max()), usual, units)) is not None:
+        said = f"must be that of the file: with it the cage is {_times(1.0 / off)} as large as one of the bearing"
+        raise InputError.of("unit", unit, f"{said}; try {units[off]!r}")
     members, planes, edges, corners = faces_of(path, triangles)
     volume, centre, inertia = solid_of(triangles)
     if volume <= 0.0:

@@ -93,7 +93,7 @@ def _revolved(
     """Equations of faces of revolution: for a point p with normal m, m . (d x (p - c)) = 0; and of end planes: m . across = 0."""
     rows, off = [], []
     for face in drawing.faces:
-        points, normals = _samples(drawing, face)
+        points, normals = samples(drawing, face)
         arms = points - origin
         lever = np.cross(direction, arms)
         radius = np.linalg.norm(lever, axis=1)
@@ -123,7 +123,7 @@ def span(angles: FloatArray) -> float:
     return float(2.0 * math.pi - np.max(np.diff(np.concatenate([ordered, ordered[:1] + 2.0 * math.pi]))))
 
 
-def _samples(drawing: Drawing, face: DrawnFace) -> tuple[FloatArray, FloatArray]:
+def samples(drawing: Drawing, face: DrawnFace) -> tuple[FloatArray, FloatArray]:
     """Points of a face and the normals there; exact where it can be evaluated."""
     if drawing.surfaces is None:
         corners = face.triangles

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.drawn.cage import DrawnCage
+from trbdyn.model.drawn.corners import depth_in, edges_of, radius_of
 from trbdyn.model.drawn.opened import Drawing, DrawnFace, opened
 from trbdyn.model.drawn.placing import Frustum, Place, axis_of, place_of, pockets_of, span
 from trbdyn.model.drawn.roller import REACHES
@@ -32,21 +33,29 @@ def read_cage(
     tolerance: float = 1e-6,
     unit: str = "mm",
     roller_plane: float | None = None,
+    chamfer: float | None = None,
 ) -> DrawnCage:
     """Recognise a cage in a drawing, with arguments and errors of `Cage.from_step`."""
     size = bearing.roller.diameter
     if not 1e-8 <= tolerance <= 0.01 * size:
         raise InputError.of("tolerance", tolerance, f"must be from 1e-8 to {0.01 * size:g} (m)")
-    with opened(path, mesh_size=0.2 * size, unit=unit) as drawing:
-        return _Reader(drawing, bearing, tolerance, roller_plane).read()
+    roller = bearing.roller
+    if chamfer is None:
+        chamfer = 0.5 * (roller.total_length - roller.effective_length)
+    elif not 0.0 <= chamfer <= 0.25 * size:
+        raise InputError.of("chamfer", chamfer, f"must be from 0 to {0.25 * size:g}, a quarter of the diameter (m)")
+    with opened(path, mesh_size=0.2 * size, unit=unit, usual=bearing.pitch_diameter + 0.3 * size) as drawing:
+        return _Reader(drawing, bearing, tolerance, roller_plane, chamfer).read()
 
 
 class _Reader:
     """Places the cage, and puts its pockets together."""
 
-    def __init__(self, drawing: Drawing, bearing: Bearing, tolerance: float, roller_plane: float | None) -> None:
+    def __init__(
+        self, drawing: Drawing, bearing: Bearing, tolerance: float, roller_plane: float | None, chamfer: float
+    ) -> None:
         self.drawing, self.bearing, self.tolerance, self.roller_plane = drawing, bearing, tolerance, roller_plane
-        self.count = bearing.n_rollers
+        self.count, self.chamfer = bearing.n_rollers, chamfer
 
     def _reach_for(self, share: float) -> None:
         reach = share * self.bearing.roller.diameter
@@ -154,9 +163,39 @@ class _Reader:
             pocket = pocket.replace(allow_interference=True)  # pockets of one drawing differ by its rounding
         problems = pocket.problems(self.roller.geometry)
         if problems:
-            at = self._of_face(place, index, faces[int(problems[0].path[1])])
-            raise FileError(f"{self.drawing.path}: pocket {index}, {at}: {problems[0].allowed}")
+            face = faces[int(problems[0].path[1])]
+            at, gap = self._of_face(place, index, face), pocket.gaps(self.roller.geometry)[face.name]
+            said = f"the roller in the middle of its pocket is {-1e3 * gap:.3g} mm inside of it: is it this bearing's cage?"
+            raise FileError(f"{self.drawing.path}: pocket {index}, {at}: {said if gap < 0.0 else problems[0].allowed}")
+        self._check_corners(place, index, pocket)
         return pocket
+
+    def _check_corners(self, place: Place, index: int, pocket: Pocket) -> None:
+        """Refuse a corner of a window that the roller comes upon before it touches bar and wall: no face of a pocket is hit by
+        the edge of an end.
+        """
+        corners = [
+            (face, self.surfaces.corner_facets(place, index, face))
+            for face in self.surfaces.near_faces(place, index)
+            if self.surfaces.is_corner(place, index, face)
+        ]
+        plays = {name: min(value, self.roller.reach) for name, value in self._plays(pocket).items()}
+        outward, across = np.array([self.axes[2, 2], 0.0, self.axes[2, 0]]), np.array([0.0, 1.0, 0.0])
+        sides = [way * plays["circumferential"] * across for way in (0.0, -1.0, 1.0)]
+        sides += [way * plays["radial"] * outward for way in (-1.0, 1.0)]
+        edges = edges_of(self.bearing, self.chamfer)
+        moved = [side - along * np.array([0.0, 0.0, 1.0]) for side in sides for along in (0.0, plays["axial"])]
+        for face, facets in corners:
+            depth = max(depth_in(facets, edges + way, self.roller.reach) for way in moved)
+            if depth > 1.5 * self.tolerance:
+                radius = radius_of(*self.surfaces.samples(place, index, face))
+                size = f" of radius {1e3 * radius:.3g} mm" if not face.is_plane else ""
+                raise FileError(
+                    f"{self.drawing.path}: pocket {index}, {_in_words(face)}: the end of the roller, whose edge is rounded by "
+                    f"chamfer = {1e3 * self.chamfer:.3g} mm, would meet this corner of the window{size} by {1e3 * depth:.3g} mm "
+                    "before it touches bar or wall, which is not simulated; give the roller's chamfer (m) if it is larger: half "
+                    "of total less effective length is taken without it; or draw the corner with a smaller radius"
+                )
 
     def _of_face(self, place: Place, index: int, face: Face) -> str:
         """The face of the drawing that a face of a pocket comes from, in words."""
@@ -166,9 +205,7 @@ class _Reader:
             for drawn in self.surfaces.near_faces(place, index)
             for facet in self.surfaces.facets(place, index, drawn)
         ]
-        drawn = min(near, key=lambda pair: pair[0])[1]
-        where = ", ".join(f"{1e3 * value:.4g}" for value in drawn.centre)
-        return f"face {drawn.number} of the drawing ({drawn.kind}, at ({where}) mm)"
+        return _in_words(min(near, key=lambda pair: pair[0])[1])
 
     # pockets that differ
 
@@ -239,3 +276,8 @@ class _Reader:
         walls = [face for face in pocket.faces if face.part == "small_end"]
         found["axial"] = self.roller.closing(walls, np.array([0.0, 0.0, -1.0]))
         return found
+
+
+def _in_words(face: DrawnFace) -> str:
+    where = ", ".join(f"{1e3 * value:.4g}" for value in face.centre)
+    return f"face {face.number} of the drawing ({face.kind}, at ({where}) mm)"

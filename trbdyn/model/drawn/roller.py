@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from trbdyn.model.drawn.facets import Facet
+from trbdyn.model.drawn.facets import Facet, outside_of
 from trbdyn.model.geometry import Geometry
 from trbdyn.model.pocket import Face, Part
 
@@ -97,7 +97,7 @@ class RollerInPocket:
         height = (centres - facet.corners[0]) @ facet.normal
         touching = np.abs(height - radii) < self.reach
         feet = centres[touching] - height[touching, None] * facet.normal
-        return bool(touching.any() and np.any(_outside(facet, feet) < self.reach))
+        return bool(touching.any() and np.any(outside_of(facet, feet) < self.reach))
 
     def closing(self, faces: list[Face], way: FloatArray) -> float:
         """How far the roller moves until it touches one of some faces (m); infinite beyond a quarter of its diameter."""
@@ -121,16 +121,3 @@ class RollerInPocket:
         while gap(high) > 0.0 and high < most:
             high += 1e-6
         return float(brentq(gap, max(low - 1e-6, 0.0), high, xtol=1e-15)) if gap(high) <= 0.0 else math.inf
-
-
-def _outside(facet: Facet, feet: FloatArray) -> FloatArray:
-    """Distance of points of a facet's plane to it."""
-    best = np.full(len(feet), np.inf)
-    inside = np.ones(len(feet), dtype=bool)
-    for start, end in zip(facet.corners, np.roll(facet.corners, -1, axis=0), strict=True):
-        side = end - start
-        off = feet - start
-        inside &= np.cross(side, off) @ facet.normal >= 0.0
-        share = np.clip(off @ side / (side @ side), 0.0, 1.0)
-        best = np.minimum(best, np.linalg.norm(off - share[:, None] * side, axis=1))
-    return np.where(inside, 0.0, best)

@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.errors import FileError
+from trbdyn.model.drawn.corners import BAR, WALL, is_corner
 from trbdyn.model.drawn.facets import Facet, convex_pieces, facets_of
 from trbdyn.model.drawn.opened import Drawing, DrawnFace
-from trbdyn.model.drawn.placing import Place
+from trbdyn.model.drawn.placing import Place, samples
 from trbdyn.model.drawn.roller import WIDE, RollerInPocket
 from trbdyn.model.pocket import MAX_VERTICES, Face, Part
 
@@ -39,6 +40,7 @@ class Surfaces:
         sine, cosine = math.sin(angle), math.cos(angle)
         self.axes = np.array([[cosine, 0.0, -sine], [0.0, 1.0, 0.0], [sine, 0.0, cosine]])
         self.cut: dict[tuple[int, int], list[Facet]] = {}
+        self._corners: dict[tuple[int, int], bool] = {}
 
     def in_pocket(self, place: Place, index: int) -> tuple[FloatArray, FloatArray]:
         """Axes (rows) and origin of a pocket's frame, in the drawing."""
@@ -73,10 +75,49 @@ class Surfaces:
             self.cut[key] = facets_of(self.drawing, face, self.tolerance, near)
         return [facet.moved(rows, origin) for facet in self.cut[key]]
 
+    def is_corner(self, place: Place, index: int, face: DrawnFace) -> bool:
+        """Whether a face is a corner of a pocket's window, which leads from a bar to an end wall, rounded or cut."""
+        if (key := (index, face.number)) not in self._corners:
+            points, normals = self.samples(place, index, face)
+            self._corners[key] = (
+                self._is_cut(place, index, face, float(abs(normals[0, 2])))
+                if face.is_plane
+                else is_corner(points, normals, self.bearing.roller.effective_length)
+            )
+        return self._corners[key]
+
+    def samples(self, place: Place, index: int, face: DrawnFace) -> tuple[FloatArray, FloatArray]:
+        """Points of a face and its normals, in the frame of a pocket."""
+        rows, origin = self.in_pocket(place, index)
+        points, normals = samples(self.drawing, face)
+        return (points - origin) @ rows.T, normals @ rows.T
+
+    def _is_cut(self, place: Place, index: int, face: DrawnFace, lean: float) -> bool:
+        """Whether a plane face lies in the notch between a bar and an end wall."""
+        if not BAR < lean < WALL:
+            return False
+        beside = []
+        for number, point in face.neighbours:
+            other = self.by_number[number]
+            if not self._joins(face, other, point):
+                beside.append(np.abs(self.samples(place, index, other)[1][:, 2]))
+        return any(own.max() < BAR for own in beside) and any(own.min() > WALL for own in beside)
+
+    def corner_facets(self, place: Place, index: int, face: DrawnFace) -> list[Facet]:
+        """A corner of a pocket's window as facets, as far as the roller is near."""
+        rows, origin = self.in_pocket(place, index)
+
+        def near(point: FloatArray, extent: float, _: FloatArray, __: float) -> bool:
+            return bool(self.roller.is_near((rows @ (point - origin))[None], np.array([extent]))[0])
+
+        return [facet.moved(rows, origin) for facet in facets_of(self.drawing, face, self.tolerance, near)]
+
     def of_pocket(self, place: Place, index: int) -> dict[str, list[Face]]:
         """The surfaces of a pocket by their names, each a list of faces."""
         kept: list[tuple[Part, Facet]] = []
         for face in self.near_faces(place, index):
+            if self.is_corner(place, index, face):
+                continue
             for facet in self.facets(place, index, face):
                 part = self.roller.meets(facet)
                 if part is not None:
