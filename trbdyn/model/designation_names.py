@@ -18,6 +18,10 @@ _GOST: Final = (
     (re.compile(r"^273(\d\d)[AА]?\w{0,2}$"), r"313\1"),
     (re.compile(r"^20071(\d\d)[AА]?\w{0,2}$"), r"320\1"),
     (re.compile(r"^20079(\d\d)[AА]?\w{0,2}$"), r"329\1"),
+    (re.compile(r"^30071(\d\d)[AА]?\w{0,2}$"), r"330\1"),
+    (re.compile(r"^30077(\d\d)[AА]?\w{0,2}$"), r"331\1"),
+    (re.compile(r"^30072(\d\d)[AА]?\w{0,2}$"), r"332\1"),
+    (re.compile(r"^10273(\d\d)[AА]?\w{0,2}$"), r"313\1"),
 )
 """Designations of GOST 27365 and 333, with the A of their present design in Latin or Cyrillic, and those of ISO 355."""
 _KINDS: Final = (

@@ -33,10 +33,11 @@ SOURCES: Final = {
     "NACHI": "NACHI, catalogues of its bearings",
     "SKF": "SKF, product tables",
     "ISB": "ISB, catalogue Tapered roller bearings, metric series and inches series",
+    "URB": "URB, general catalogue v. 14 (2017)",
     "recalled": "recalled from makers' catalogues",
 }
 """What the names in the column `source` stand for. Boundary dimensions are those of ISO 355 and ABMA 19.2."""
-PAGES: Final = ("NACHI",)
+PAGES: Final = ("NACHI", "URB")
 """Sources that state e; with others it is recalled, or left open."""
 RECALLED: Final = 0.03
 """Band of an e that was recalled (1): what makers' catalogues differ by."""

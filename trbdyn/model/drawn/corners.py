@@ -26,23 +26,26 @@ NEAR_END: Final = 0.25
 
 
 def edges_of(bearing: Bearing, chamfer: float) -> FloatArray:
-    """Points of the rounded edges of both ends of the roller in the frame of its pocket (m), shape (n, 3)."""
+    """Points of the rounded edges of both ends of the roller in the frame of its pocket (m), shape (n, 3): circles that touch the
+    flank and the end, which at the large end of a tapered roller is a sphere.
+    """
     geometry = bearing.geometry
     turned = np.linspace(0.0, 2.0 * math.pi, AROUND, endpoint=False)
     circle = np.stack([np.cos(turned), np.sin(turned), np.zeros(AROUND)], axis=1)
-    slope, middle = math.tan(geometry.roller_half_angle), 0.5 * bearing.roller.diameter
+    half_angle, middle = geometry.roller_half_angle, 0.5 * bearing.roller.diameter
     found = []
     for way, end, sphere in (
         (1.0, geometry.large_end_station, geometry.sphere_radius),
         (-1.0, geometry.small_end_station, math.inf),
     ):
-        straight = end - way * chamfer
-        rim = middle + straight * slope - chamfer
-        high = max(chamfer - (sphere - math.sqrt(sphere**2 - rim**2) if rim < sphere < math.inf else 0.0), 0.0)
-        for at in np.linspace(0.0, 0.5 * math.pi, ALONG):
-            station = straight + way * high * math.sin(at)
-            radius = middle + station * slope - chamfer * (1.0 - math.cos(at))
-            found.append(radius * circle + [0.0, 0.0, station])
+        rim = middle + end * math.tan(half_angle) - chamfer
+        flat = end - (sphere - math.sqrt(sphere**2 - rim**2) if rim < sphere < math.inf else 0.0)
+        centre = flat - way * chamfer
+        off = middle + centre * math.tan(half_angle) - chamfer / math.cos(half_angle)
+        for at in np.linspace(
+            -half_angle, way * 0.5 * math.pi, ALONG
+        ):  # from the normal of the flank to that of the end
+            found.append((off + chamfer * math.cos(at)) * circle + [0.0, 0.0, centre + chamfer * math.sin(at)])
     return np.concatenate(found)
 
 

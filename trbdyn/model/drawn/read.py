@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     from trbdyn.model.bearing import Bearing
 
 FloatArray = NDArray[np.float64]
+
+NARROWED: Final = 0.1
+"""Share of the circumferential play by which a corner of the window may narrow it."""
 
 
 def read_cage(
@@ -187,7 +190,7 @@ class _Reader:
         moved = [side - along * np.array([0.0, 0.0, 1.0]) for side in sides for along in (0.0, plays["axial"])]
         for face, facets in corners:
             depth = max(depth_in(facets, edges + way, self.roller.reach) for way in moved)
-            if depth > 1.5 * self.tolerance:
+            if depth > 1.5 * self.tolerance + NARROWED * plays["circumferential"]:
                 radius = radius_of(*self.surfaces.samples(place, index, face))
                 size = f" of radius {1e3 * radius:.3g} mm" if not face.is_plane else ""
                 raise FileError(
