@@ -40,8 +40,8 @@ void trb_multirate_flows(trb_integrator *it, const trb_team *team, double time, 
   for (int k = 0; k < team->n; k++) s->movers[team->rollers[k]].flow = d->flows[team->rollers[k]];
 }
 
-/* Whether a roller's slopes are to be taken again for a step that ends at a time: they are old, poor, were corrected often, or the prescribed motion
- * changes (integrator_cvode.c says why). fresh: the solve failed with those that there are. */
+/* Whether a roller's slopes are to be taken again for a step that ends at a time: they are old, poor, were corrected often, or served for some solves
+ * while the prescribed motion changes (integrator_cvode.c says why). fresh: the solve failed with those that there are. */
 static int wants_slopes(const trb_integrator *it, int roller, double end, int fresh)
 {
   const trb_multirate *s = it->self;
@@ -49,7 +49,7 @@ static int wants_slopes(const trb_integrator *it, int roller, double end, int fr
   if (mover->slopes_at == end) return 0;
   return fresh || (mover->poor && mover->solves >= TRB_BETWEEN_RENEWALS) || trb_tangents_are_worn(s->jacobian->tangents, roller) ||
          fabs(end - mover->slopes_at) > it->settings.rings_age ||
-         trb_motion_changes(it->members[0].motion, end - it->settings.rings_age, end);
+         (mover->solves >= TRB_JACOBIAN_EVERY && trb_motion_changes(it->members[0].motion, end - it->settings.rings_age, end));
 }
 
 static void note_slopes(trb_mover *mover, double end)
