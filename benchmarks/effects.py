@@ -11,6 +11,8 @@ it is, over that in a core that was compiled without the effect's code: 1 if an 
 cores are compiled in this run from the same copy of the sources with the same flags, loaded side by side and timed in
 turns. ``evaluations_off`` sums the effect's counters over a run without it. Effects whose switch only chooses data or
 one of two loops (pocket faces, the rib's film, planar motion) have no code of their own to leave out, and no ratio.
+``instructions_off`` and ``instructions_on`` are counted by callgrind, so that what else the machine does is not in them. An
+effect that is off in the scene of all others (a film in the pockets, drag, a housing) is added to it, and its "all" is with it.
 """
 
 from __future__ import annotations
@@ -18,7 +20,7 @@ from __future__ import annotations
 import argparse
 import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -28,6 +30,7 @@ import numpy as np
 from accuracy import measure, states
 from effect_cost.build import BuildError, Builds
 from effect_cost.catalogue import EFFECTS, EVERYTHING, NOTHING, Effect
+from effect_cost.instructions import CannotCount, counted, described
 
 from trbdyn import Scene, Simulation, Start, TrbError
 from trbdyn.model.effects import Effects
@@ -42,7 +45,10 @@ COLUMNS = {
     "us_on": "us: one force evaluation with this effect alone",
     "us_none": "us: one force evaluation with none (with what the effect needs)",
     "share": "1: share of the effect in a force evaluation, 1 - us_off/us_all",
+    "instructions_ratio_off": "1: instructions without the effect over those of a core built without its code",
     "time_ratio_off": "1: force evaluation without the effect over that of a core built without its code",
+    "instructions_off": "1000: instructions of one force evaluation with all effects but this, by callgrind with AVX2",
+    "instructions_on": "1000: the same with this effect",
     "evaluations_off": "1: sum of the effect's counters in the run without it",
     "evaluations_on": "1: sum of the effect's counters in the run with all effects",
     "cpu_s_per_revolution_off": "s: processor time a revolution with all effects but this",
@@ -71,11 +77,12 @@ class Plan:
     rounds: int
     built: tuple[str, ...] | None
     effects: tuple[str, ...] | None = None
+    counted: bool = True
 
 
 FULL = Plan(5, 10.0, 41, None)
 QUICK = Plan(2, 1.0, 15, None)
-SMOKE = Plan(1, 0.1, 3, ("thermal",), ("thermal", "gravity"))
+SMOKE = Plan(1, 0.1, 3, ("thermal",), ("thermal", "gravity"), counted=False)
 
 
 def scene_with(case: states.Case, effects: Effects) -> Scene:
@@ -83,9 +90,16 @@ def scene_with(case: states.Case, effects: Effects) -> Scene:
     return case.scene.replace(effects=effects, start=Start.equal())
 
 
+def state_of(scene: Scene, case: states.Case) -> Any:
+    """A state of the colliding cage, or that of the start where the scene has other coordinates."""
+    start = Simulation(scene).state
+    return case.states[0] if len(start.vector) == len(case.states[0].vector) else start
+
+
 def evaluation_us(scene: Scene, vector: Any, repeats: int) -> float:
-    """Time of one force evaluation (us)."""
+    """Time of one force evaluation (us); from the start where the state is that of other coordinates."""
     sim = Simulation(scene)
+    vector = vector if len(vector) == len(sim.state.vector) else sim.state.vector
     return 1e6 * measure.least_per_call(lambda: sim.derivative(vector, 0.0), repeats=repeats)
 
 
@@ -119,9 +133,46 @@ def ratio_of(with_code: Evaluation, without: Evaluation, rounds: int) -> float:
     return fastest[0] / fastest[1]
 
 
-def ratios(case: states.Case, plan: Plan, report: common.Report) -> dict[str, float]:
-    """time_ratio_off of every effect that a core can be built without."""
-    out: dict[str, float] = {}
+def instructions(case: states.Case, plan: Plan, report: common.Report) -> dict[str, dict[str, float]]:
+    """Instructions of an evaluation without and with every effect; nothing, and a note, where they cannot be counted."""
+    if not plan.counted:
+        return {}
+    plain, vector = scene_with(case, EVERYTHING), case.states[0].vector
+    scenes = [plain, plain]  # the first evaluation of a process takes more
+    for effect in EFFECTS:
+        scenes.append(effect.switched_on(plain) if effect.is_added else effect.switched_off(plain))
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            counts = counted([described(scene, vector) for scene in scenes], Path(folder))
+        except CannotCount as error:
+            report.notes.append(f"No instructions were counted: {error}.")
+            return {}
+    every = counts[1]
+    out: dict[str, dict[str, float]] = {}
+    for effect, count in zip(EFFECTS, counts[2:], strict=True):
+        off, on = (every, count) if effect.is_added else (count, every)
+        out[effect.name] = {"instructions_off": off, "instructions_on": on}
+    return out
+
+
+def counted_without(case: states.Case, effect: Effect, cores: Sequence[ModuleType], plan: Plan) -> float | None:
+    """Instructions of an evaluation without an effect, over those in a core without its code; None where none are counted."""
+    if not plan.counted:
+        return None
+    scene = described(effect.switched_off(scene_with(case, EVERYTHING)), case.states[0].vector)
+    found = []
+    for core in cores:
+        with tempfile.TemporaryDirectory() as folder:
+            try:
+                found.append(counted([scene, scene], Path(folder), Path(str(core.__file__)))[-1])
+            except CannotCount:
+                return None
+    return found[0] / found[1]
+
+
+def ratios(case: states.Case, plan: Plan, report: common.Report) -> dict[str, dict[str, float | None]]:
+    """time_ratio_off and instructions_ratio_off of every effect that a core can be built without."""
+    out: dict[str, dict[str, float | None]] = {}
     variant = Simulation(case.scene).instruction_set
     wanted = [effect for effect in EFFECTS if effect.patch is not None]
     wanted = [effect for effect in wanted if plan.built is None or effect.name in plan.built]
@@ -144,7 +195,10 @@ def ratios(case: states.Case, plan: Plan, report: common.Report) -> dict[str, fl
             try:
                 core = builds.without(effect.name, effect.patch)
                 with_code, without = (Evaluation(one, scene, vector, variant) for one in (whole, core))
-                out[effect.name] = ratio_of(with_code, without, plan.rounds)
+                out[effect.name] = {
+                    "time_ratio_off": ratio_of(with_code, without, plan.rounds),
+                    "instructions_ratio_off": counted_without(case, effect, (whole, core), plan),
+                }
             except (BuildError, TrbError) as error:
                 report.notes.append(f"{effect.name}: no time_ratio_off: {error}.")
     return out
@@ -155,18 +209,23 @@ def one_effect(
 ) -> dict[str, Any]:
     """Figures of an effect alone off and alone on."""
     vector = case.states[0].vector
-    off = scene_with(case, EVERYTHING.replace(**effect.off))
+    plain = scene_with(case, EVERYTHING)
+    off, every = effect.switched_off(plain), effect.switched_on(plain)
     row: dict[str, Any] = {"effect": effect.name, "text": effect.text}
     row["us_off"] = evaluation_us(off, vector, plan.rounds)
-    row["us_all"] = evaluation_us(scene_with(case, EVERYTHING), vector, plan.rounds)
+    row["us_all"] = evaluation_us(every, vector, plan.rounds)
     row["share"] = 1.0 - row["us_off"] / row["us_all"]
     row["us_none"] = evaluation_us(scene_with(case, NOTHING.replace(**effect.needs)), vector, plan.rounds)
-    on = scene_with(case, NOTHING.replace(**{**effect.needs, **effect.on}))
+    on = effect.alone(plain)
     row["us_on"] = evaluation_us(on, vector, plan.rounds)
     cost = measure.wall_time(off, case.states, {}, plan.revolutions, repeats=2)
     row["cpu_s_per_revolution_off"] = cost["cpu_s_per_revolution"]
     row["steps_per_revolution_off"] = cost["steps_per_revolution"]
-    found = measure.long_run(case, {}, plan.revolutions, off)
+    found = whole if effect.is_added else measure.long_run(case, {}, plan.revolutions, off)
+    if effect.is_added:
+        state = state_of(every, case)
+        whole = measure.long_run(replace(case, states=(state,)), {}, plan.revolutions, every)
+        all_counters = counters_of(every, state, plan)
     row["cage_speed_change"] = change(found["cage_speed_ratio"], whole["cage_speed_ratio"], relative=True)
     row["whirl_radius_change"] = change(found["whirl_radius"], whole["whirl_radius"], relative=False)
     row["whirl_radius_half_width"] = found["whirl_radius"].half_width
@@ -212,16 +271,17 @@ def run(plan: Plan, options: argparse.Namespace) -> common.Report:
         "whirl_radius_half_width": whole["whirl_radius"].half_width,
     }
     report.summary["none"] = {"us": evaluation_us(scene_with(case, NOTHING), vector, plan.rounds)}
-    found = ratios(case, plan, report)
+    found, counts = ratios(case, plan, report), instructions(case, plan, report)
     for effect in EFFECTS:
         if plan.effects is None or effect.name in plan.effects:
             row = one_effect(effect, case, plan, whole, all_counters)
-            report.add(**row, time_ratio_off=found.get(effect.name))
+            report.add(**row, **found.get(effect.name, {}), **counts.get(effect.name, {}))
     report.summary["effects"] = {
-        row["effect"]: {name: row[name] for name in ("time_ratio_off", "evaluations_off", "share")}
+        row["effect"]: {name: row.get(name) for name in ("time_ratio_off", "evaluations_off", "share")}
         for row in report.results
     }
-    report.summary["worst_time_ratio_off"] = max(found.values(), default=None)
+    known = [ratio for one in found.values() if (ratio := one["time_ratio_off"]) is not None]
+    report.summary["worst_time_ratio_off"] = max(known, default=None)
     report.notes.append(
         "Changes are those when the effect is added to all others; a change of the whirl radius smaller than the confidence "
         "interval is none. Times a revolution depend on the motion: an effect that calms it seems to cost nothing."
@@ -237,7 +297,8 @@ def text_of(report: common.Report) -> str:
         "largest time_ratio_off": report.summary["worst_time_ratio_off"],
         "ratio of two equal cores": report.summary.get("control_ratio"),
     }
-    cost = ("effect", "us_off", "share", "us_none", "us_on", "time_ratio_off", "evaluations_off", "evaluations_on")
+    counts = ("instructions_off", "instructions_on", "instructions_ratio_off", "evaluations_off", "evaluations_on")
+    cost = ("effect", "us_off", "share", "us_none", "us_on", "time_ratio_off", *counts)
     walls = ("cpu_s_per_revolution_off", "cpu_s_per_revolution_on", "steps_per_revolution_off")
     changes = ("cage_speed_change", "whirl_radius_change", "whirl_radius_half_width", "torque_change")
     tables = (
@@ -264,7 +325,7 @@ def draw(report: common.Report) -> Any:
     left.set_title("cost of an effect")
     left.axvline(0.0, color="0.3", lw=0.8)
     left.legend(fontsize=8)
-    known = [(i, row["time_ratio_off"]) for i, row in enumerate(report.results) if row["time_ratio_off"]]
+    known = [(i, row["time_ratio_off"]) for i, row in enumerate(report.results) if row.get("time_ratio_off")]
     middle.plot([value for _, value in known], [i for i, _ in known], "o")
     middle.axvline(1.0, color="0.3", lw=0.8)
     middle.set_xlim(0.9, max([1.1, *(value + 0.02 for _, value in known)]))

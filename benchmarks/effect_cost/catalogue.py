@@ -1,5 +1,7 @@
 """The effects of a scene: how each is switched off and on, which counters it has, and where its code is.
 
+Every field of `trbdyn.Effects` and of `trbdyn.Scene` is in a row of `EFFECTS`, or in `NUMBERS`; a test says which is not.
+
 A patch takes the code of an effect out of a copy of the C sources: pairs of a regular expression and what replaces it, by
 file. If the sources change so that an expression does not match, the build says so.
 """
@@ -10,6 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
+import trbdyn as trb
 from trbdyn.model.effects import Effects
 
 NODES: Final = {"quadrature": "gauss", "n_slices": 8}
@@ -26,6 +29,8 @@ NOTHING: Final = Effects.frictionless().replace(
     pocket_edges=False,
 )
 """Rollers between raceways, normal contact only, and a cage that nothing touches."""
+
+RING: Final = trb.RingBody(mass=2.0, inertia_axial=2e-3, inertia_transverse=2e-3)
 
 Patch = Mapping[str, tuple[tuple[str, str], ...]]
 
@@ -47,6 +52,10 @@ class Effect:
         Changes of `NOTHING` that switch it on.
     needs : dict
         Changes of `NOTHING` without which it cannot be on; what it costs alone is measured against those.
+    added : dict
+        Changes of `EVERYTHING` that switch on what is off in it; then `off` is empty.
+    scene : dict
+        Changes of the scene that switch on what is no switch of `Effects`.
     counters : tuple of str
         Counters of the core that must be zero where it is off.
     patch : dict, optional
@@ -60,6 +69,31 @@ class Effect:
     needs: Mapping[str, Any] = field(default_factory=dict)
     counters: tuple[str, ...] = ()
     patch: Patch | None = None
+    added: Mapping[str, Any] = field(default_factory=dict)
+    scene: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def fields(self) -> dict[str, set[str]]:
+        """Fields of `Effects` and of `Scene` that the row switches."""
+        scene = {name.partition(".")[0] for name in self.scene} - {"bearing"}
+        return {"Effects": {*self.off, *self.on, *self.added}, "Scene": scene}
+
+    @property
+    def is_added(self) -> bool:
+        """Whether it is off in `EVERYTHING`."""
+        return bool(self.added or self.scene)
+
+    def switched_on(self, scene: trb.Scene) -> trb.Scene:
+        """A scene that has it, with all others of `EVERYTHING`."""
+        return scene.replace({"effects": EVERYTHING.replace(**self.added), **self.scene})
+
+    def switched_off(self, scene: trb.Scene) -> trb.Scene:
+        """A scene that has all others of `EVERYTHING`, and not this one."""
+        return scene.replace(effects=EVERYTHING.replace(**self.off))
+
+    def alone(self, scene: trb.Scene) -> trb.Scene:
+        """A scene that has this one, and of the others what it needs."""
+        return scene.replace({"effects": NOTHING.replace(**{**self.needs, **self.added, **self.on}), **self.scene})
 
 
 EFFECTS: Final = (
@@ -197,4 +231,172 @@ EFFECTS: Final = (
         {"planar": True},
         patch=None,
     ),
+    Effect(
+        "exponential mixing",
+        "share of asperities by an exponential; off: a sixth power",
+        {},
+        {},
+        {"traction": "muraki_kimura", "lubrication": "mixed"},
+        added={"mixed_law": "exponential"},
+    ),
+    Effect(
+        "supply",
+        "share of rolling resistance that the supply of oil leaves",
+        {},
+        {},
+        {"rolling_resistance": True},
+        added={"supply": 0.83},
+    ),
+    Effect(
+        "replenishment",
+        "fast rollers leave less oil behind",
+        {},
+        {},
+        {"rolling_resistance": True},
+        added={"replenishment": "bath"},
+    ),
+    Effect(
+        "oil height",
+        "supply by the place of the meniscus",
+        {},
+        {},
+        {"rolling_resistance": True},
+        added={"oil_height": 2e-5},
+        counters=("meniscus_nodes",),
+    ),
+    Effect(
+        "flooded gaps",
+        "gaps beside the loaded part resist rolling",
+        {},
+        {},
+        {"rolling_resistance": True},
+        added={"flooded_gaps": True},
+        counters=("gap_nodes",),
+    ),
+    Effect(
+        "hysteresis",
+        "elastic hysteresis of the steel",
+        {},
+        {},
+        {"rolling_resistance": True},
+        added={"hysteresis": 0.01},
+        counters=("hysteresis_nodes",),
+    ),
+    Effect(
+        "thermal law",
+        "heat of the inlet by Aihara; off: by Gupta",
+        {},
+        {},
+        {"traction": "muraki_kimura", "thermal": True},
+        added={"thermal_law": "aihara"},
+    ),
+    Effect(
+        "rolling law",
+        "rolling resistance by numerical solutions; off: Zhou and Hoeprich",
+        {},
+        {},
+        {"rolling_resistance": True},
+        added={"rolling_law": "line_solution", "rolling_load": "contact"},
+    ),
+    Effect(
+        "film damping",
+        "damping of raceways and ribs by their films; off: constant",
+        {},
+        {},
+        {},
+        added={"damping": "film"},
+    ),
+    Effect(
+        "rib turning", "sliding turns within the rib's contact", {}, {}, {"back_rib": True}, added={"rib_turning": True}
+    ),
+    Effect(
+        "pocket film",
+        "film of the oil between roller and bar",
+        {},
+        {},
+        {"pocket_bars": True, "gravity": True},
+        added={"pocket_film": 5e-5},
+        counters=("pocket_films",),
+    ),
+    Effect(
+        "drag",
+        "drag of the oil on rollers and cage",
+        {},
+        {},
+        {},
+        added={"oil_fill": 0.1},
+        counters=("drag_rollers", "drag_cages"),
+    ),
+    Effect(
+        "guiding land",
+        "a land of the inner ring guides the cage",
+        {},
+        {},
+        {},
+        added={"guidance": "inner_land"},
+        counters=("land_films", "land_contacts"),
+    ),
+    Effect(
+        "spacer",
+        "a spacer in place of the cage",
+        {},
+        {},
+        {},
+        added={"bodies": "rollers_and_spacer"},
+        counters=("spacers",),
+    ),
+    Effect(
+        "elastic cage",
+        "six natural modes of the cage",
+        {},
+        {},
+        scene={
+            "bearing": trb.cases.rig_30310().replace({"cage.body": trb.cases.cage_body_30310()}),
+            "elastic_cage": trb.ElasticCage(n_modes=6),
+        },
+    ),
+    Effect(
+        "uneven surfaces",
+        "waves of the inner raceway",
+        {},
+        {},
+        scene={"defects": (trb.Waviness(on="inner", orders=(12,), amplitudes=(3e-7,)),)},
+        counters=("uneven_contacts",),
+    ),
+    Effect("free ring", "the inner ring moves with its mass", {}, {}, scene={"ring": "free", "ring_body": RING}),
+    Effect(
+        "housing",
+        "the outer ring moves with its housing",
+        {},
+        {},
+        scene={
+            "ring": "free",
+            "ring_body": RING,
+            "housing": trb.Housing(
+                mass=5.0,
+                inertia_axial=1e-2,
+                inertia_transverse=1e-2,
+                support_radial=1e8,
+                support_axial=1e8,
+                support_tilt=1e5,
+            ),
+        },
+    ),
 )
+
+NUMBERS: Final = {
+    "Effects": frozenset(
+        {
+            *("starvation_factor", "drag_coefficient", "film_damping", "film_damping_depth", "damping_race"),
+            *("damping_cage", "quadrature", "n_slices", "friction"),
+        }
+    ),
+    "Scene": frozenset(
+        {
+            *("bearing", "speed_rpm", "outer_speed_rpm", "axial_load", "radial_load", "radial_direction_deg"),
+            *("misalignment_x", "misalignment_y", "moment_x", "moment_y", "rotating_load", "displacement", "unloaded"),
+            *("lubricant", "effects", "start", "torque", "growth", "gravity"),
+        }
+    ),
+}
+"""Fields that are numbers, loads, motions or parts of a scene, and no effects that are on or off."""

@@ -55,12 +55,47 @@ def test_counters_of_all_effects_that_are_off_stay_at_zero(catalogue: Any) -> No
 
     _, effects = catalogue
     for effect in effects.EFFECTS:
-        scene = cases.scene_30310(effects=effects.EVERYTHING.replace(**effect.off))
-        sim = Simulation(scene)
+        sim = Simulation(effect.switched_off(cases.scene_30310()))
         for _ in range(3):
             sim.step()
         counters = sim.counters
         assert [counters[name] for name in effect.counters] == [0] * len(effect.counters), effect.name
+
+
+def test_every_switch_has_its_row(catalogue: Any) -> None:
+    import trbdyn as trb
+
+    _, effects = catalogue
+    for model in (trb.Effects, trb.Scene):
+        rows = set().union(*(effect.fields[model.__name__] for effect in effects.EFFECTS))
+        numbers = effects.NUMBERS[model.__name__]
+        assert numbers <= set(model.model_fields)
+        assert not rows & numbers
+        assert set(model.model_fields) - numbers == rows, f"{model.__name__}: a switch without a row, or a row without one"
+
+
+def test_what_is_added_is_evaluated_and_leaves_nothing_where_it_is_off(catalogue: Any) -> None:
+    """Counters, fields of a record, and losses in the energy audit, for every row that is off in the scene of the others."""
+    import numpy as np
+
+    from trbdyn import Simulation, cases
+
+    _, effects = catalogue
+    base = cases.scene_30310()
+    off = Simulation(base.replace(effects=effects.EVERYTHING))
+    plain, record = off.derivative(), set(off.record())
+    for effect in effects.EFFECTS:
+        if not effect.is_added:
+            continue
+        on = Simulation(effect.switched_on(base))
+        for _ in range(3):
+            on.step()
+        counters = on.counters
+        assert not effect.counters or any(counters[name] for name in effect.counters), effect.name
+        assert all(off.counters[name] == 0 for name in effect.counters), effect.name
+        changed = on.derivative()
+        differs = changed.shape != plain.shape or not np.array_equal(changed, plain)
+        assert differs or set(on.record()) != record, f"{effect.name} does nothing"
 
 
 def test_code_of_each_effect_is_still_where_it_is_taken_out(catalogue: Any, tmp_path: Path) -> None:

@@ -1,0 +1,93 @@
+"""The paper's statements beside our numbers in one picture, from ``paper.json`` alone: nothing is computed again.
+
+python -c "from paper.overview import draw; draw('overview.png')"
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Final
+
+import matplotlib.pyplot as plt
+from matplotlib.axes import Axes
+
+from paper.points import FIGURES, STARTS, Condition, Inputs, Point, StartKind
+from trbdyn import plot
+from trbdyn.plot.style import COLOURS, GREY, STYLE
+
+HERE: Final = Path(__file__).resolve().parent
+SEEDS: Final = (0, 1, 2)
+DIRECTIONS: Final = (90.0, 180.0, 0.0, -90.0)
+ZONES: Final = {90.0: "on top", 180.0: "rollers descend", 0.0: "rollers rise", -90.0: "at the bottom"}
+CPC_OVER_CPR: Final = 0.48
+
+Numbers = Mapping[str, Any]
+
+
+def kept() -> Numbers:
+    """`paper.json`."""
+    found: Numbers = json.loads((HERE / "paper.json").read_text(encoding="utf-8"))
+    return found
+
+
+def values(points: Numbers, condition: Condition, start: StartKind, *names: str | int) -> list[float]:
+    """A number of every seed that was run."""
+    out = []
+    for name in dict.fromkeys(Point(condition, start, seed).name for seed in SEEDS):
+        if name in points:
+            value: Any = points[name]
+            for part in names:
+                value = value[part]
+            out.append(float(value))
+    return out
+
+
+def _over(ax: Axes, points: Numbers, figure: str, along: str, *names: str | int) -> None:
+    for index, start in enumerate(STARTS):
+        for condition in FIGURES[figure]:
+            found = values(points, condition, start, *names)
+            x = [getattr(condition, along)] * len(found)
+            ax.plot(x, found, "osd"[index], color=COLOURS[index], markersize=5, fillstyle="none")
+        ax.plot([], [], "osd"[index], color=COLOURS[index], fillstyle="none", label=f"start: {start}")
+    ax.legend(fontsize=7)
+    ax.set_ylim(bottom=0.0)
+
+
+def _combined(ax: Axes, points: Numbers) -> None:
+    conditions = tuple(dict.fromkeys((*FIGURES["16a"], *FIGURES["16b"])))
+    for index, direction in enumerate(DIRECTIONS):
+        label: str | None = f"{direction:g}°: {ZONES[direction]}"
+        for place, condition in enumerate(conditions):
+            chosen = condition.within(Inputs(direction))
+            found = values(points, chosen, "equal", "whirl_radius_over_cpr", "p95")
+            shifted = [place + 0.12 * (index - 1.5)] * len(found)
+            ax.plot(shifted, found, "osdv"[index], color=COLOURS[index], markersize=5, label=label if found else None)
+            label = None if found else label
+    ax.axhline(CPC_OVER_CPR, color=GREY, linestyle="--", linewidth=0.9)
+    names = [f"{c.speed_rpm:g} rpm\n{c.radial_load:g} N" for c in conditions]
+    ax.set_xticks(range(len(names)), names, fontsize=7)
+    ax.set(ylabel="reach (95 %) / $C_{pr}$", ylim=(0.0, 1.1))
+    ax.legend(fontsize=7, ncols=2)
+
+
+def draw(path: str | Path) -> None:
+    """Draw it."""
+    points = kept()["points"]
+    with plt.rc_context(STYLE):
+        fig, axes = plt.subplots(2, 2, figsize=(8.6, 6.6))
+        (speed, load), (axial, combined) = axes
+        _over(speed, points, "12a", "speed_rpm", "orbit_over_cpr")
+        speed.set(xlabel="speed (rpm)", ylabel="orbit / $C_{pr}$")
+        speed.set_title("Fig. 8a, 12a: the radius grows with the speed (3080 N)", fontsize=8.5)
+        _over(load, points, "12b", "axial_load", "orbit_over_cpr")
+        load.set(xlabel="axial load (N)", ylabel="orbit / $C_{pr}$")
+        load.set_title("Fig. 8b, 12b: it grows with the load, to about 1 (3000 rpm)", fontsize=8.5)
+        _over(axial, points, "9", "speed_rpm", "axial_range", 1)
+        axial.axhline(0.15, color=GREY, linestyle="--", linewidth=0.9)
+        axial.set(xlabel="speed (rpm)", ylabel="axial place (95 %) / play")
+        axial.set_title("Fig. 9: axial motion grows with the speed, below 15 %", fontsize=8.5)
+        _combined(combined, points)
+        combined.set_title("Fig. 11, 16: combined load, about $C_{pc}/C_{pr}$ (dashed)", fontsize=8.5)
+        plot.save(fig, Path(path), overwrite=True)
