@@ -241,6 +241,8 @@ def scene_of(definition: CaseDefinition) -> Scene:
 
 def at_state(scene: Scene, state: State) -> Scene:
     """The scene started from a state."""
+    if scene.housing is not None:
+        return scene.replace(start=Start.state(state))
     return scene.replace(start=Start.state(state.vector, time=state.time))
 
 

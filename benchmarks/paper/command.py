@@ -12,6 +12,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Final
 
+from common import defaults_mark, revision
 from tqdm import tqdm
 
 from paper.figures import draw_all, movable_limits
@@ -260,6 +261,8 @@ def report(runs: Runs, folder: Path, plan: Plan, failures: dict[str, str], early
     values = {
         "schema": SCHEMA,
         "trbdyn_version": __version__,
+        "revision": revision(),
+        "defaults": defaults_mark(),
         "written": datetime.now(UTC).isoformat(timespec="seconds"),
         "plan": asdict(plan),
         "assumptions": "cases.rig_30310, VG100 at 60 C, Effects.paper() with 8 Gauss nodes a contact, the same for all points",
