@@ -71,7 +71,9 @@ def test_every_switch_has_its_row(catalogue: Any) -> None:
         numbers = effects.NUMBERS[model.__name__]
         assert numbers <= set(model.model_fields)
         assert not rows & numbers
-        assert set(model.model_fields) - numbers == rows, f"{model.__name__}: a switch without a row, or a row without one"
+        assert set(model.model_fields) - numbers == rows, (
+            f"{model.__name__}: a switch without a row, or a row without one"
+        )
 
 
 def test_what_is_added_is_evaluated_and_leaves_nothing_where_it_is_off(catalogue: Any) -> None:
