@@ -317,6 +317,8 @@ def test_starts_side_by_side() -> None:
     assert found.verdict == "agreed"
     assert found.orbit == pytest.approx(0.1, abs=found.error)
     assert obs.compare_starts((rest, large), window=20, kinds=["rocking", "stable"]).verdict == "agreed"
+    assert not obs.agree([0.1, 0.1], [0.01, math.nan], ["stable", "stable"])
+    assert not obs.agree([0.1, 0.1], [0.01, 0.01], ["unknown", "unknown"])
     apart = obs.compare_starts((rest, large), window=20, kinds=["rocking", "circling"])
     assert apart.verdict == "unknown"
     assert "one of them is circling, the other rocking" in apart.reason

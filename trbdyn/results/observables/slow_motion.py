@@ -386,7 +386,7 @@ def agree(orbits: Collection[float], unknown: Collection[float], kinds: Collecti
     """
     alike = "unknown" not in kinds and (len(set(kinds)) <= 1 or set(kinds) <= NO_WHIRL)
     limit = LIMITS[COMPARED]
-    return alike and max(orbits) - min(orbits) <= limit and max(unknown) <= limit
+    return alike and max(orbits) - min(orbits) <= limit and all(one <= limit for one in unknown)  # nan is not known
 
 
 def compare_starts(
