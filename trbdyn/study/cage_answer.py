@@ -345,13 +345,15 @@ class _Search:
                 windows += 1
                 found = {name: self._compared(name, runs) for name in self.subject.names}
                 before, spent = spent, sum(one.spent for one in runs.values())
-                left = (most - spent) / (spent - before) * self._length  # bearing time that can still be run
+                done = all(one.verdict == "agreed" for one in found.values())
+                third = BETWEEN not in runs and not done and windows >= (1 if slowly else BEFORE_THIRD)
+                cost = (spent - before) / len(runs) * (len(runs) + third)  # of the next windows (s)
+                left = (most - spent) / cost * self._length  # bearing time that can still be run
                 if windows > 1 and (
                     left < self._length or all(self._is_done(one, windows, left) for one in found.values())
                 ):
                     break
-                done = all(one.verdict == "agreed" for one in found.values())
-                if BETWEEN not in runs and not done and windows >= (1 if slowly else BEFORE_THIRD):
+                if third:
                     runs[BETWEEN] = self._begun(BETWEEN)
         return [self._row(name, found[name], runs, spent) for name in self.subject.names]
 
