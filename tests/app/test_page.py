@@ -174,10 +174,10 @@ def test_from_nothing_to_a_signed_sheet(user: Any, server: Any, name: str) -> No
         user.click("fold.spectrum")
         user.type("spectrum", spectrum)
     user.click("tab.run")
-    user.type("run.revolutions", "2")
+    user.type("run.revolutions", "0.2")
     user.says("inputs complete")
     user.click("run")
-    finished(user)
+    finished(user, 600.0)
     assert "done: reached" in user.text("said")
     user.click("tab.results")
     user.browser.wait("document.querySelector('[data-path=verdict]')")
@@ -209,6 +209,22 @@ def test_a_run_can_be_stopped_and_survives_the_browser(user: Any, shared: Any) -
     (path,) = (shared.folder / "runs").glob("*/run.h5")
     assert len(trb.load(path)) > 1  # what was recorded is kept
     assert shared.process.poll() is None
+
+
+def test_stop_while_a_report_is_drawn(user: Any, shared: Any) -> None:
+    """The run has ended by then: its report is drawn to its end."""
+    opened(user, shared)
+    ready(user)
+    user.click("tab.run")
+    user.type("run.revolutions", "0.05")
+    before = {path.name for path in (shared.folder / "runs").iterdir()}
+    user.click("run")
+    user.browser.wait("/(drawing|view|report)$/.test(document.querySelector('[data-path=said]').textContent)")
+    user.click("stop")
+    finished(user)
+    assert "done: reached" in user.text("said")
+    (name,) = {path.name for path in (shared.folder / "runs").iterdir()} - before
+    assert "Report" in (shared.folder / "runs" / name / "report.html").read_text()
 
 
 @pytest.mark.slow

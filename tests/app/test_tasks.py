@@ -111,6 +111,23 @@ def test_a_task_says_what_is_wrong_and_can_be_stopped(tmp_path: Path) -> None:
     assert len(trb.load(job.folder / "run.h5")) > 1
 
 
+def test_stop_while_a_report_is_drawn_loses_nothing(tmp_path: Path) -> None:
+    bench = Bench.open(tmp_path)
+    job = bench.start("run", "drawn", arguments(Design(typed={**SHORT, "run.revolutions": "0.05"})), {})
+    assert job is not None
+    while job.text not in ("drawing", "3-D view", "report"):
+        assert job.running, job.text
+        bench.look()
+        time.sleep(0.01)
+    job.stop()
+    ended(bench)
+    assert job.state == "done"
+    assert job.text.startswith("reached")
+    for name in ("run.h5", "report.html", "view.html", "summary.json"):
+        assert (job.folder / name).stat().st_size > 100
+    assert bench.kept()[0].about["state"] == "done"
+
+
 def test_a_plan_can_be_stopped(tmp_path: Path) -> None:
     bench = Bench.open(tmp_path)
     job = bench.start("run", "plan", arguments(Design(typed=dict(SHORT), planned=True)), {})

@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from trbdyn.cli import main
 from trbdyn.plot import PICTURES
 from trbdyn.reporting import converter
 from trbdyn.reporting.captions import CAPTIONS
+from trbdyn.reporting.front import front
 from trbdyn.reporting.inputs import rows
 from trbdyn.reporting.page import page
 from trbdyn.reporting.verdict import verdict
@@ -314,3 +316,32 @@ def test_a_ramp_from_rest_has_its_torque_compared_at_speed(tmp_path: Path) -> No
         r"With straight rollers the torque would be \d\.\d+ and the largest pressure would be 0\.\d+", text
     )
     assert not re.search(r"\bnan\b", text)
+
+
+def test_a_sheet_of_a_shaft_tells_its_loads_and_what_bearings_share_once() -> None:
+    shaft = trb.Shaft.hollow_cylinder(mass=6.0, outer_diameter=0.05, length=0.3)
+    push = trb.ShaftLoad(position=0.02, force=(3000.0, -800.0, 900.0), offset=(0.0, 0.04), moment=(5.0, 0.0))
+    pair = trb.Assembly.pair(
+        trb.Bearing.named("32208"),
+        "back to back",
+        spread=0.12,
+        end_play=-1e-5,
+        shaft=shaft,
+        speed_rpm=1500,
+        loads=(push,),
+    )
+    result = trb.Simulation(pair, accuracy="fast").run(duration=1e-5)
+    parts = list(result.by_name.values())
+    judged: list[Any] = [[("good", "Life", "")], [("care", "Life", "")]]
+    listed = [rows(one.scene) for one in parts]
+    text = front(parts, ["left", "right"], listed, [{"energy_closure": 1e-6}, {}], ["", ""], judged, pair)
+    for said in (
+        "3000, -800, 900 N",
+        "at 20 mm, off the axis by 0, 40 mm, with the moments 5, 0 N m about x, y",
+        "1500 rpm",
+    ):
+        assert said in text
+    assert text.count("as left") == 2  # estimated and assumed
+    assert text.count("cage.play_radial") == 1
+    assert "10000, kept" in text  # a margin without a power of ten
+    assert text.index("signature") > text.index("right: inputs")

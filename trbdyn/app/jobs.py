@@ -62,7 +62,9 @@ class Job:
         if word == "progress":
             self.share, self.text = rest
             return True
-        self.state, self.text = "stopped" if self.stopping and word == "done" else word, rest[0]
+        # a run that had reached its end was not stopped: what was told to stop was drawing, which goes on
+        stopped = self.stopping and word == "done" and not rest[1].get("success")
+        self.state, self.text = "stopped" if stopped else word, rest[0]
         if word == "failed":
             self.problems = rest[1]
         else:

@@ -163,6 +163,8 @@ def _run(
         output=folder / "run.h5",
         callback=look,
     )
+    # what was recorded is shown, whoever stops now: Stop for a second time ends this process
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     return _shown(folder, say, result, subject, wants, extra, also or Also())
 
 

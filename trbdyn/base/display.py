@@ -61,6 +61,15 @@ def displayed(value: float, unit: str, digits: int = 4, *, like: float | None = 
     return plain(factor * value, digits), name
 
 
+def amount(value: float, unit: str, digits: int = 4, *, like: float | None = None) -> str:
+    """A number in SI with its unit, as `displayed` gives both.
+
+    >>> amount(0.0123, "N m")
+    '12.3 N mm'
+    """
+    return " ".join(displayed(value, unit, digits, like=like))
+
+
 _NUMBER: Final = r"[+-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?"
 _COMPARED: Final = re.compile(rf"(must be (?:>=|<=|>|<|from|at least|at most) )({_NUMBER})(?: to ({_NUMBER}))?")
 

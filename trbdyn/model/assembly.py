@@ -448,7 +448,7 @@ class Assembly(TurningRings, Model):
             ("mass of the shaft", f"{self.shaft.mass:g}", "kg", f"centre at {1e3 * self.shaft.mass_position:.4g} mm")
         ]
         for name, one in zip(self.names, self.bearings, strict=True):
-            set_by = f"end play {1e6 * one.end_play:.4g} um" if one.spring is None else f"spring {one.spring.force:g} N"
+            set_by = f"end play {1e6 * one.end_play:.4g} µm" if one.spring is None else f"spring {one.spring.force:g} N"
             rows.append(
                 (f"{name}, load centre", f"{1e3 * one.position:.4g}", "mm", f"small ends {one.small_ends}, {set_by}")
             )
@@ -460,7 +460,13 @@ class Assembly(TurningRings, Model):
             rows.insert(1, row)
         for index, load in enumerate(self.loads):
             force = ", ".join(f"{part:.5g}" if isinstance(part, int | float) else "changes" for part in load.force)
-            rows.append((f"load {index + 1}", force, "N", f"at {1e3 * load.position:.4g} mm"))
+            note = f"at {1e3 * load.position:.4g} mm"
+            if any(load.offset):
+                note += f", off the axis by {', '.join(f'{1e3 * part:.4g}' for part in load.offset)} mm"
+            if any(moment := [0.0 if isinstance(part, int | float) and not part else part for part in load.moment]):
+                told = ", ".join(f"{part:.5g}" if isinstance(part, int | float) else "changes" for part in moment)
+                note += f", with the moments {told} N m about x, y"
+            rows.append((f"load {index + 1}: x, y, z", force, "N", note))
         return Shown(f"Assembly: {self.title}", tuple(rows))
 
     def __hash__(self) -> int:

@@ -13,9 +13,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from trbdyn.base.display import plain as number
 from trbdyn.errors import InputError
 from trbdyn.plot.cage import last_turns
-from trbdyn.plot.style import COLOURS, GREY, LINES, legend, sequence, styled
+from trbdyn.plot.style import COLOURS, GREY, LINES, legend, scaled, sequence, styled
 from trbdyn.results.fields import contacts
 from trbdyn.results.result import Result
 from trbdyn.run.replay import Replay
@@ -63,14 +64,16 @@ def load_zone(result: Result, ax: Axes | None = None, last: float | None = None,
     shown = last_turns(result, last)
     orbit = shown["roller_orbit_angle"]
     with styled():
-        ax = _polar(ax, "Load of a roller by its place around the bearing (N)")
-        for index, (side, name) in enumerate(contacts().items()):
-            if f"{side}_load" not in shown or not shown[f"{side}_load"].any():
+        loads = {name: shown[f"{side}_load"] for side, name in contacts().items() if f"{side}_load" in shown}
+        factor, unit = scaled("N", *loads.values())
+        ax = _polar(ax, f"Load of a roller by its place around the bearing ({unit})")
+        for index, (name, values) in enumerate(loads.items()):
+            if not values.any():
                 continue
-            load = shown[f"{side}_load"]
+            load = factor * values
             place, mean, low, high = binned(orbit, load, bins)
             around = [np.append(values, values[0]) for values in (place, mean, low, high)]
-            label = f"{name}, {load.min():.4g} to {load.max():.4g} N"
+            label = f"{name}, {number(load.min())} to {number(load.max())} {unit}"
             ax.plot(around[0], around[1], color=COLOURS[index], linestyle=LINES[index], label=label)
             ax.fill_between(around[0], around[2], around[3], color=COLOURS[index], alpha=0.2, linewidth=0)
         ax.set_ylim(bottom=0)
@@ -114,7 +117,8 @@ def pocket_polar(result: Result, ax: Axes | None = None, threshold: float = 0.0)
     touched = np.flatnonzero(statistics.peak.max(axis=0) > threshold).tolist()
     width = 2.0 * np.pi / count
     with styled():
-        paper: Any = _polar(ax, "Force in each pocket (N): peak (light) and 95 % while touched (dark)")
+        factor, unit = scaled("N", statistics.peak)
+        paper: Any = _polar(ax, f"Force in each pocket ({unit}): peak (light) and 95 % while touched (dark)")
         for order, slot in enumerate(touched):
             bar = 0.8 * width / len(touched)
             place = width * np.arange(count) + bar * (order - 0.5 * (len(touched) - 1))
@@ -122,8 +126,8 @@ def pocket_polar(result: Result, ax: Axes | None = None, threshold: float = 0.0)
             colour = COLOURS[order % len(COLOURS)]
             peak = statistics.peak[:, slot]
             p95 = np.where(peak > threshold, np.nan_to_num(statistics.p95[:, slot]), 0.0)
-            paper.bar(place, peak, bar, color=colour, alpha=0.35, linewidth=0)
-            paper.bar(place, p95, bar, color=colour, linewidth=0, label=name)
+            paper.bar(place, factor * peak, bar, color=colour, alpha=0.35, linewidth=0)
+            paper.bar(place, factor * p95, bar, color=colour, linewidth=0, label=name)
         every = max(1, count // 24)
         paper.set_thetagrids(np.degrees(width * np.arange(0, count, every)), [str(k) for k in range(0, count, every)])
         if touched:
@@ -139,13 +143,15 @@ THICK_FILM: Final = 5.0
 """Film parameter at which the scale of its map ends: beyond it no surface touches, and thicker films, which unloaded ends of
 rollers have a thousand times, would hide the thin ones.
 """
-_MAPS: Final[dict[str, tuple[str, str, float, str]]] = {
-    "pressure": ("raceway_pressure", "largest Hertz pressure (GPa)", 1e-9, "Pressure"),
-    "film": ("raceway_film", "central film thickness (µm)", 1e6, "Film thickness"),
-    "film_parameter": ("raceway_film_parameter", r"film parameter $\Lambda$", 1.0, "Film parameter"),
-    "slide_roll": ("raceway_slide_roll", "slide-roll ratio", 1.0, "Slide-roll ratio"),
-    "load_per_length": ("raceway_load_per_length", "load per length (N/mm)", 1e-3, "Load per length"),
+_MAPS: Final[dict[str, tuple[str, str, str, str]]] = {
+    "pressure": ("raceway_pressure", "largest Hertz pressure ({})", "Pa", "Pressure"),
+    "film": ("raceway_film", "central film thickness (µm)", "", "Film thickness"),
+    "film_parameter": ("raceway_film_parameter", r"film parameter $\Lambda$", "1", "Film parameter"),
+    "slide_roll": ("raceway_slide_roll", "slide-roll ratio", "1", "Slide-roll ratio"),
+    "load_per_length": ("raceway_load_per_length", "load per length (N/mm)", "", "Load per length"),
 }
+"""Of each quantity its field, label, unit in SI, and title; without a unit it has that of the label, see `_FIXED`."""
+_FIXED: Final = {"film": 1e6, "load_per_length": 1e-3}
 
 
 def contact_map(
@@ -187,7 +193,7 @@ def contact_map(
             raise InputError.of("sides", side, "must be 'outer' or 'inner'")
     if not isinstance(records, int) or records < 1:
         raise InputError.of("records", records, "must be a whole number >= 1")
-    key, label, factor, title = _MAPS[quantity]
+    key, label, si, title = _MAPS[quantity]
     replay = Replay(result)
     index = np.unique(np.linspace(0, len(result) - 1, min(records, len(result))).round().astype(int))
     orbit = result["roller_orbit_angle"][index]
@@ -195,7 +201,8 @@ def contact_map(
     stations = 1e3 * replay.stations
     number = (np.mod(orbit, 2.0 * np.pi) / (2.0 * np.pi) * bins).astype(int).ravel() % bins
     count = np.bincount(number, minlength=bins)
-    grids = []
+    factor, unit = (_FIXED[quantity], "") if not si else scaled(si, *(contact[key] for contact in found))
+    label, grids = label.format(unit), []
     for side in sides:
         row = 0 if side == "outer" else 1
         loaded = np.array([contact["raceway_load"][row] for contact in found]).reshape(-1, stations.size) > 0.0

@@ -14,6 +14,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 from numpy.typing import NDArray
 
+from trbdyn.base.display import amount
+from trbdyn.base.display import plain as number
 from trbdyn.errors import InputError
 from trbdyn.model.assembly import Assembly, ShaftBearing
 from trbdyn.model.motion import value_at
@@ -22,7 +24,7 @@ from trbdyn.plot.around import name_angles
 from trbdyn.plot.cage import revolutions, turns_label
 from trbdyn.plot.drawing import ROLLER, STEEL, placed, roller_outline
 from trbdyn.plot.ring import draw_motion, draw_path
-from trbdyn.plot.style import COLOURS, GREY, LIGHT, LINES, canvas, legend, line, plain, styled
+from trbdyn.plot.style import COLOURS, GREY, LIGHT, LINES, canvas, legend, line, plain, scaled, styled
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.result import Result
 from trbdyn.statics.assembly import ShaftEquilibrium, equilibrium
@@ -47,19 +49,20 @@ def preload_diagram(diagram: PreloadDiagram, ax: Axes | None = None) -> Axes:
     """
     with canvas(ax, title="Preload diagram") as ax:
         place = 1e6 * diagram.displacement
+        factor, unit = scaled("N", *diagram.loads.values(), diagram.axial_force)
         for index, (name, load) in enumerate(diagram.loads.items()):
-            line(ax, place, 1e-3 * load, index, f"axial load of {name}")
-        line(ax, place, 1e-3 * diagram.axial_force, len(diagram.loads), "axial force on the shaft")
+            line(ax, place, factor * load, index, f"axial load of {name}")
+        line(ax, place, factor * diagram.axial_force, len(diagram.loads), "axial force on the shaft")
         for found, label, inside in (
             (diagram.preload, "without axial force", "white"),
             (diagram.operating, "operating point", GREY),
         ):
             where = 1e6 * float(found.displacement()[2])
-            loads = [1e-3 * one.axial_load for one in found.bearings]
+            loads = [factor * one.axial_load for one in found.bearings]
             ax.plot([where] * len(loads), loads, "o", color=GREY, markerfacecolor=inside, ms=5, label=label, zorder=3)
             ax.axvline(where, color=GREY, linewidth=0.8, linestyle=":")
         ax.axhline(0.0, color=GREY, linewidth=0.8)
-        ax.set(xlabel="axial displacement of the shaft to the right (um)", ylabel="axial load (kN)")
+        ax.set(xlabel="axial displacement of the shaft to the right (µm)", ylabel=f"axial load ({unit})")
         legend(ax)
     return ax
 
@@ -77,19 +80,22 @@ def load_zones(found: ShaftEquilibrium) -> Figure:
         figure, axes = plt.subplots(
             1, count, figsize=(3.6 * count, 4.4), subplot_kw={"projection": "polar"}, squeeze=False
         )
-        largest = max(1.0, *(float(one.outer_load.max()) for one in found.bearings))
+        factor, unit = scaled("N", *(one.outer_load for one in found.bearings))
+        largest = max(1.0, factor * max(float(one.outer_load.max()) for one in found.bearings))
         for ax, one in zip(axes[0], found.bearings, strict=True):
             order = np.argsort(one.angles)
             around = np.append(one.angles[order], one.angles[order][0])
             for index, (label, load) in enumerate((("outer ring", one.outer_load), ("inner ring", one.inner_load))):
-                values = np.append(load[order], load[order][0])
+                values = factor * np.append(load[order], load[order][0])
                 style = {"color": COLOURS[index], "linestyle": LINES[index], "marker": "o", "markersize": 3.0}
-                ax.plot(around, values, label=f"{label}, {load.min():.4g} to {load.max():.4g} N", **style)
+                ax.plot(
+                    around, values, label=f"{label}, {number(values.min())} to {number(values.max())} {unit}", **style
+                )
             ax.set_ylim(0.0, 1.05 * largest)
             name_angles(ax)
-            ax.set_title(f"{one.name}: $F_a$ {one.axial_load:.4g} N, $F_r$ {one.radial_load:.4g} N")
+            ax.set_title(f"{one.name}: $F_a$ {amount(one.axial_load, 'N')}, $F_r$ {amount(one.radial_load, 'N')}")
             ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.08))
-        figure.suptitle("Loads of the rollers (N)", fontsize=11)
+        figure.suptitle(f"Loads of the rollers ({unit})", fontsize=11)
     return figure
 
 
@@ -193,7 +199,7 @@ def _arrows(assembly: Assembly, reach: float) -> list[_Arrow]:
         at, along, up = 1e3 * load.offset[1], scale * force[2], scale * force[1]
         outside = abs(at) > reach
         start = min(max(at, -reach - min(up, 0.0)), reach - max(up, 0.0)) if outside else at
-        words = f"{math.hypot(*force[1:]):.4g} N" + (f", x {force[0]:.4g} N" if force[0] else "")
+        words = amount(math.hypot(*force[1:]), "N") + (f", x {amount(force[0], 'N')}" if force[0] else "")
         if outside:
             words += f", acts at y = {at:.4g} mm"
         place = 1e3 * load.position
@@ -219,11 +225,12 @@ def bearing_loads(result: AssemblyResult, ax: Axes | None = None) -> Axes:
         Needs the group ring.
     """
     with canvas(ax, title="Loads of the bearings") as ax:
+        factor, unit = scaled("N", *(values for name in result for values in result.loads(name).values()))
         for index, (name, one) in enumerate(result.items()):
             for load, style in (("axial_load", "-"), ("radial_load", (0, (5, 1.5)))):
-                values = 1e-3 * result.loads(name)[load]
+                values = factor * result.loads(name)[load]
                 line(ax, revolutions(one), values, index, f"{name}, {load[:-5]}", linestyle=style)
-        ax.set(xlabel=turns_label(one), ylabel="load (kN)")
+        ax.set(xlabel=turns_label(one), ylabel=f"load ({unit})")
         legend(ax)
     return ax
 

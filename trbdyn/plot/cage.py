@@ -15,7 +15,7 @@ from matplotlib.patches import Circle
 from matplotlib.ticker import MultipleLocator
 
 from trbdyn.errors import InputError
-from trbdyn.plot.style import COLOURS, GREY, LINES, canvas, is_own, legend, line, pair, sequence
+from trbdyn.plot.style import COLOURS, GREY, LINES, canvas, is_own, legend, line, pair, scaled, sequence
 from trbdyn.results import observables
 from trbdyn.results.result import Result
 
@@ -213,12 +213,14 @@ def whirl_map(results: Iterable[Result], ax: Axes | None = None) -> Axes:
     points = [
         (
             float(np.mean(np.abs(result.turning_speed))) * 30.0 / np.pi,
-            float(np.mean(np.abs(result["ring_force"][:, 2]))) / 1e3,
+            float(np.mean(np.abs(result["ring_force"][:, 2]))),
             result.settled.cage_motion.orbit_over_play,
         )
         for result in results
     ]
     speed, load, radius = np.array(points).T
+    factor, unit = scaled("N", load)
+    load = factor * load
     with canvas(ax, (5.6, 4.4), "Orbit radius of the cage over speed and load") as ax:
         sizes, colours = 60 + 400 * np.clip(radius, 0, 1.2), {"c": radius, "cmap": sequence(), "vmin": 0, "vmax": 1}
         marks = ax.scatter(speed, load, s=sizes, edgecolors="black", **colours)
@@ -230,5 +232,5 @@ def whirl_map(results: Iterable[Result], ax: Axes | None = None) -> Axes:
         for values, limits, set_limits in ((speed, ax.get_xlim(), ax.set_xlim), (load, ax.get_ylim(), ax.set_ylim)):
             around = LEAST_SPAN * float(np.abs(values).max())
             set_limits(min(limits[0], float(values.min()) - around), max(limits[1], float(values.max()) + around))
-        ax.set(xlabel="shaft speed (rpm)", ylabel="axial load (kN)")
+        ax.set(xlabel="shaft speed (rpm)", ylabel=f"axial load ({unit})")
     return ax

@@ -8,7 +8,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.patches import Patch, Rectangle
 
-from trbdyn.plot.style import plain, styled
+from trbdyn.plot.style import plain, scaled, styled
 
 if TYPE_CHECKING:
     import xarray
@@ -30,6 +30,7 @@ def draw_map(data: xarray.Dataset) -> Any:
     """
     starts, loads, speeds = (data[name].values for name in ("start", "axial_load", "speed_rpm"))
     width = 1.6 + 0.75 * len(speeds)
+    factor, unit = scaled("N", loads)
     with styled():
         figure, axes = plt.subplots(
             1, len(starts), figsize=(max(width, 3.6) * len(starts), 2.2 + 0.5 * len(loads)), squeeze=False, sharey=True
@@ -38,12 +39,12 @@ def draw_map(data: xarray.Dataset) -> Any:
             _fields(ax, data.sel(start=start))
             ax.set_title(STARTED[str(start)])
             ax.set_xticks(np.arange(len(speeds)), [f"{speed:g}" for speed in speeds])
-            ax.set_yticks(np.arange(len(loads)), [f"{load:g}" for load in loads])
+            ax.set_yticks(np.arange(len(loads)), [f"{factor * load:g}" for load in loads])
             ax.set_xlim(-0.5, len(speeds) - 0.5)
             ax.set_ylim(-0.5, len(loads) - 0.5)
             ax.set_xlabel("speed of the shaft (rpm)")
             ax.grid(visible=False)
-        axes[0, 0].set_ylabel("axial load (N)")
+        axes[0, 0].set_ylabel(f"axial load ({unit})")
         there = [kind for kind in SHADES if (data["kind"].values == kind).any()]
         keys = [Patch(facecolor=SHADES[kind], edgecolor="0.4", label=kind) for kind in there]
         if not bool(data["decided"].all()):

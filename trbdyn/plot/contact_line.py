@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from trbdyn.model.contact_line import stations
 from trbdyn.model.profiles import profile_drop, raceway_drops
 from trbdyn.model.scene import Scene
-from trbdyn.plot.style import legend, line, styled
+from trbdyn.plot.style import legend, line, scaled, styled
 from trbdyn.run.simulation import Simulation
 
 NODES = 64
@@ -34,7 +34,7 @@ def contact_line(scene: Scene) -> Figure:
     >>> import trbdyn as trb
     >>> figure = trb.plot.contact_line(trb.cases.scene_32216())
     >>> figure.axes[1].get_ylabel()
-    'Largest pressure (GPa)'
+    'Largest pressure (MPa)'
     """
     fine = scene.replace(effects=scene.effects.replace(quadrature="gauss", n_slices=NODES))
     bearing, places = scene.bearing, stations(fine)
@@ -42,13 +42,14 @@ def contact_line(scene: Scene) -> Figure:
     roller = int(found["raceway_load"].sum(axis=(0, 2)).argmax())
     pressure = np.where(found["raceway_load"][:, roller] > 0.0, found["raceway_pressure"][:, roller], 0.0)
     gaps = profile_drop(bearing, places) + raceway_drops(bearing, places)
+    factor, unit = scaled("Pa", pressure)
     with styled():
         figure, axes = plt.subplots(2, 1, sharex=True, figsize=(6.4, 5.4))
         for race, name in enumerate(RACES):
             line(axes[0], 1e3 * places, 1e6 * gaps[race], race, name)
-            line(axes[1], 1e3 * places, 1e-9 * pressure[race], race, name)
+            line(axes[1], 1e3 * places, factor * pressure[race], race, name)
         axes[0].set(ylabel="Gap of the profiles (µm)")
-        axes[1].set(xlabel="Place along the roller, towards its large end (mm)", ylabel="Largest pressure (GPa)")
+        axes[1].set(xlabel="Place along the roller, towards its large end (mm)", ylabel=f"Largest pressure ({unit})")
         legend(axes[0])
         figure.suptitle(f"Gap and pressure along roller {roller}\n{_edges(pressure)}", fontsize=11)
     return figure

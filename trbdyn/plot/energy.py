@@ -7,22 +7,26 @@ from collections.abc import Mapping
 import numpy as np
 from matplotlib.axes import Axes
 
+from trbdyn.base.display import plain as number
 from trbdyn.plot.cage import revolutions, turns_label
-from trbdyn.plot.style import COLOURS, LINES, canvas, envelope, legend
+from trbdyn.plot.style import COLOURS, LINES, canvas, envelope, legend, scaled
 from trbdyn.results.result import Result
 from trbdyn.results.rows.losses import mean_loss, shaft_torque, torque_by_force, torque_by_loss
 
 
-def _bars(ax: Axes, values: Mapping[str, float], unit: str, total: float) -> None:
-    """Horizontal bars, the largest on top, each with its number and share; what is exactly zero is left out."""
+def _bars(ax: Axes, values: Mapping[str, float], si: str, total: float) -> tuple[float, str]:
+    """Horizontal bars, the largest on top, each with its number and share; what is exactly zero is left out. Gives factor and
+    unit in which they are shown.
+    """
+    factor, unit = scaled(si, total)
     shown = sorted(((value, name) for name, value in values.items() if value), key=lambda pair: abs(pair[0]))
-    numbers = np.array([value for value, _ in shown])
+    numbers = factor * np.array([value for value, _ in shown])
     ax.barh([name.replace("_", " ") for _, name in shown], numbers, color=COLOURS[0], height=0.6)
     for place, value in enumerate(numbers):
-        share = f" ({100 * value / total:.3g} %)" if total else ""
+        share = f" ({100 * value / (factor * total):.3g} %)" if total else ""
         offset = 4 if value >= 0 else -4
         ax.annotate(
-            f"{value:.3g} {unit}{share}",
+            f"{number(value, 3)} {unit}{share}",
             (value, place),
             xytext=(offset, 0),
             textcoords="offset points",
@@ -35,6 +39,7 @@ def _bars(ax: Axes, values: Mapping[str, float], unit: str, total: float) -> Non
     ax.margins(x=0.32)
     if numbers.size and numbers.min() >= 0:
         ax.set_xlim(left=0)
+    return factor, unit
 
 
 def torque_split(result: Result, ax: Axes | None = None) -> Axes:
@@ -52,13 +57,16 @@ def torque_split(result: Result, ax: Axes | None = None) -> Axes:
     total, forces = shaft_torque(result), torque_by_force(result)
     if {"power", "energy"} & set(result.groups):
         split, title = torque_by_loss(result), "Friction torque of the shaft by what loses it"
-        told = ", ".join(f"{name.replace('_', ' ')} {value:.3g}" for name, value in forces.items() if value)
-        note = f"\nforces on the inner ring that make this torque:\n{told} N m"
+        factor, unit = scaled("N m", total)
+        told = ", ".join(
+            f"{name.replace('_', ' ')} {number(factor * value, 3)}" for name, value in forces.items() if value
+        )
+        note = f"\nforces on the inner ring that make this torque:\n{told} {unit}"
     else:
         split, title, note = forces, "Friction torque of the shaft by the force on the inner ring", ""
     with canvas(ax, (6.4, 3.2), title) as ax:
-        _bars(ax, split, "N m", total)
-        ax.set_xlabel(f"torque (N m), {total:.4g} N m in all{note}")
+        factor, unit = _bars(ax, split, "N m", total)
+        ax.set_xlabel(f"torque ({unit}), {number(factor * total)} {unit} in all{note}")
     return ax
 
 
@@ -73,8 +81,8 @@ def power_split(result: Result, ax: Axes | None = None) -> Axes:
     split = result.power_split
     total = mean_loss(result)
     with canvas(ax, (6.4, 3.2), "Power loss by mechanism") as ax:
-        _bars(ax, split, "W", total)
-        ax.set_xlabel(f"power loss (W), {total:.4g} W in all")
+        factor, unit = _bars(ax, split, "W", total)
+        ax.set_xlabel(f"power loss ({unit}), {number(factor * total)} {unit} in all")
     return ax
 
 
@@ -91,6 +99,7 @@ def energy_audit(result: Result, ax: Axes | None = None) -> Axes:
     closure = result.energy_closure
     with canvas(ax, (6.4, 4.0), "Energy audit") as ax:
         turned = revolutions(result)
+        factor, unit = scaled("J", work, losses)
         rest = f"residual, largest ({closure:.1e} of the losses at the end)"
         curves = {
             "work put in": work,
@@ -99,11 +108,11 @@ def energy_audit(result: Result, ax: Axes | None = None) -> Axes:
             rest: balance["residual"],
         }
         for index, (name, values) in enumerate(curves.items()):
-            x, size = envelope(turned, np.abs(values))
+            x, size = envelope(turned, factor * np.abs(values))
             colour, width = (COLOURS[5], COLOURS[0], COLOURS[1], COLOURS[6])[index], (4.0, 1.4, 1.0, 1.0)[index]
             dashes = LINES[1] if index == 1 else "-"
             ax.plot(x[size > 0], size[size > 0], label=name, color=colour, linewidth=width, linestyle=dashes)
         ax.set_yscale("log")
-        ax.set(xlabel=turns_label(result), ylabel="size since the start (J)", xlim=(turned[0], turned[-1]))
+        ax.set(xlabel=turns_label(result), ylabel=f"size since the start ({unit})", xlim=(turned[0], turned[-1]))
         legend(ax, ncols=2)
     return ax

@@ -8,7 +8,7 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 
-from trbdyn.plot.style import COLOURS, GREY, MARKERS, plain, styled
+from trbdyn.plot.style import COLOURS, GREY, MARKERS, plain, scaled, styled
 
 
 def draw_balance(balances: Sequence[Any]) -> Any:
@@ -25,11 +25,14 @@ def draw_balance(balances: Sequence[Any]) -> Any:
 
 def _draw(left: Any, right: Any, found: Any) -> None:
     film = found.temperatures["film"]
-    left.plot(*found.curve.T, marker="o", ms=4, color=COLOURS[0], label="lost, by runs")
+    factor, unit = scaled("W", found.curve[:, 1])
+    left.plot(found.curve[:, 0], factor * found.curve[:, 1], marker="o", ms=4, color=COLOURS[0], label="lost, by runs")
     coldest = min(outside for conductance, outside in found.paths.outer_links.values() if conductance > 0.0)
-    left.plot(film, found.power, "s", color=COLOURS[6], ms=8, label="given off as well")
+    left.plot(film, factor * found.power, "s", color=COLOURS[6], ms=8, label="given off as well")
     left.axvline(film, color=GREY, lw=0.8, ls=":")
-    left.set(xlabel="temperature of films (°C)", ylabel="power (W)", title=plain(found.scene.bearing.name) or "bearing")
+    left.set(
+        xlabel="temperature of films (°C)", ylabel=f"power ({unit})", title=plain(found.scene.bearing.name) or "bearing"
+    )
     left.set_ylim(bottom=0.0)
     left.set_xlim(left=min(coldest, found.curve[0, 0]) - 2.0)
     left.legend()

@@ -7,7 +7,7 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 
-from trbdyn.plot.style import COLOURS, GREY, LINES, styled
+from trbdyn.plot.style import COLOURS, GREY, LINES, scaled, styled
 
 
 def draw_preload_over(found: Any) -> Any:
@@ -29,15 +29,18 @@ def draw_preload_over(found: Any) -> Any:
         play.axhline(0.0, color=GREY, lw=0.8)
         play.set(ylabel="play, negative: preload (µm)", title="play and 99 % of the parts")
         play.legend()
+        factor, unit = scaled("N", [sheet.axial_load for row in rows for sheet in row.sheets.values()])
         for k, name in enumerate(dict.fromkeys(name for row in rows for name in row.sheets)):
-            loads = [1e-3 * row.sheets[name].axial_load if name in row.sheets else np.nan for row in rows]
+            loads = [factor * row.sheets[name].axial_load if name in row.sheets else np.nan for row in rows]
             load.plot(at, loads, color=COLOURS[k], ls=LINES[k % len(LINES)], label=name or None)
-        load.set(ylabel="axial load (kN)", title="preload and load")
+        load.set(ylabel=f"axial load ({unit})", title="preload and load")
         load.set_ylim(bottom=0.0)
         if len(rows[0].temperatures) > 1:
             load.legend()
-        torque.plot(at, [np.nan if row.torque is None else row.torque for row in rows], color=COLOURS[0])
-        torque.set(xlabel=where, ylabel="friction torque (N m)", title="torque of the contacts")
+        torques = np.array([np.nan if row.torque is None else row.torque for row in rows])
+        factor, unit = scaled("N m", torques)
+        torque.plot(at, factor * torques, color=COLOURS[0])
+        torque.set(xlabel=where, ylabel=f"friction torque ({unit})", title="torque of the contacts")
         torque.set_ylim(bottom=0.0)
         for k, (name, label) in enumerate((("life_hours", "L10h"), ("modified_reference_life_hours", "Lnmrh"))):
             lives = [np.nan if getattr(row, name) is None else min(getattr(row, name), 1e6) for row in rows]

@@ -13,9 +13,10 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogFormatter
 
+from trbdyn.base.display import plain as number
 from trbdyn.errors import InputError
 from trbdyn.plot.cage import last_turns, need_cage, revolutions, turns_label
-from trbdyn.plot.style import COLOURS, GREY, LIGHT, MARKERS, OWN, canvas, legend, line, sequence, styled
+from trbdyn.plot.style import COLOURS, GREY, LIGHT, MARKERS, OWN, canvas, legend, line, scaled, sequence, styled
 from trbdyn.results.fields import contacts
 from trbdyn.results.result import Result
 
@@ -85,6 +86,8 @@ def pocket_forces(result: Result, pockets: Sequence[int] | None = None, last: fl
     largest = np.maximum.reduceat(force[:, chosen], edges[:-1], axis=0)
     touched = [slot for slot in range(slots) if largest[:, :, slot].any()]
     borders = np.append(turned[edges[:-1]], turned[-1])
+    factor, unit = scaled("N", largest)
+    largest = factor * largest
     top = float(largest.max(initial=0.0)) or 1.0
     with styled():
         height = 0.55 + max(0.9, 0.13 * len(chosen))
@@ -114,7 +117,7 @@ def pocket_forces(result: Result, pockets: Sequence[int] | None = None, last: fl
         else:
             long = 1e3 * (shown["time"][-1] - shown["time"][0]) / (len(edges) - 1)
             bar = figure.colorbar(mesh, ax=axes.ravel().tolist(), shrink=0.9, pad=0.02, extend="min")
-            bar.set_label(f"largest force within {long:.2g} ms (N)")
+            bar.set_label(f"largest force within {long:.2g} ms ({unit})")
     return figure
 
 
@@ -125,6 +128,7 @@ def pocket_statistics(result: Result, ax: Axes | None = None, threshold: float =
     touched = np.flatnonzero(stats.peak.max(axis=0) > 0).tolist()
     with canvas(ax, title="Forces on the pockets: 95 % in contact (filled), peak (open)") as ax:
         place = np.arange(stats.peak.shape[0])
+        factor, unit = scaled("N", stats.peak)
         for index, slot in enumerate(touched):
             shift = 0.16 * (index - 0.5 * (len(touched) - 1))
             label = f"{_face_name(result, slot)} (touched {100 * stats.duty[:, slot].mean():.2g} % of the time)"
@@ -134,12 +138,12 @@ def pocket_statistics(result: Result, ax: Axes | None = None, threshold: float =
                 "linestyle": "none",
                 "markersize": 5,
             }
-            peak = np.where(stats.peak[:, slot] > threshold, stats.peak[:, slot], np.nan)
-            p95 = np.where(stats.peak[:, slot] > threshold, stats.p95[:, slot], np.nan)
+            peak = np.where(stats.peak[:, slot] > threshold, factor * stats.peak[:, slot], np.nan)
+            p95 = np.where(stats.peak[:, slot] > threshold, factor * stats.p95[:, slot], np.nan)
             ax.vlines(place + shift, p95, peak, color=look["color"], linewidth=0.8)
             ax.plot(place + shift, p95, label=label, **look)
             ax.plot(place + shift, peak, markerfacecolor="white", **look)
-        ax.set(xlabel="pocket", ylabel="normal force (N)", xticks=place[:: max(1, place.size // 12)])
+        ax.set(xlabel="pocket", ylabel=f"normal force ({unit})", xticks=place[:: max(1, place.size // 12)])
         ax.set_ylim(bottom=0)
         legend(ax, ncols=1)
     return ax
@@ -167,24 +171,29 @@ def _around(
     return place, mean, low, high
 
 
-def _draw_around(result: Result, ax: Axes, quantity: str, unit: str = "") -> None:
+def _draw_around(result: Result, ax: Axes, quantity: str, si: str = "1") -> str:
+    """Draw a quantity of both raceways; gives the unit in which it is shown."""
+    named = [f"{side}_{quantity}" for side in contacts() if f"{side}_{quantity}" in result]
+    factor, unit = scaled(si, *(result[name] for name in named))
+    said = "" if si == "1" else f" {unit}"
     for index, (side, name) in enumerate(contacts().items()):
         if f"{side}_{quantity}" not in result or not result[f"{side}_{quantity}"].any():
             continue
-        values = result[f"{side}_{quantity}"]
+        values = factor * result[f"{side}_{quantity}"]
         weight = result[f"{side}_load"] if quantity == "film_parameter" else np.ones_like(values)
         place, mean, low, high = _around(result["roller_orbit_angle"], values, weight)
-        line(ax, place, mean, index, f"{name} (mean {np.average(values, weights=weight):.4g}{unit})")
+        line(ax, place, mean, index, f"{name} (mean {number(np.average(values, weights=weight))}{said})")
         ax.fill_between(place, low, high, color=COLOURS[index], alpha=0.25, linewidth=0)
     ax.set(xlim=(0, 360), xticks=range(0, 361, 45))
     ax.set_xlabel("place around the bearing from x towards y (deg)\nline: mean, band: 5 to 95 %")
+    return unit
 
 
 def contact_loads(result: Result, ax: Axes | None = None) -> Axes:
     """Contact loads around the bearing: mean, and the range from 5 to 95 %."""
     with canvas(ax, title="Contact loads of the rollers around the bearing") as ax:
-        _draw_around(result, ax, "load", " N")
-        ax.set_ylabel("normal load (N)")
+        unit = _draw_around(result, ax, "load", "N")
+        ax.set_ylabel(f"normal load ({unit})")
         ax.set_ylim(bottom=0)
         legend(ax, ncols=2)
     return ax

@@ -7,7 +7,7 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 
-from trbdyn.plot.style import COLOURS, GREY, LINES, MARKERS, plain, styled
+from trbdyn.plot.style import COLOURS, GREY, LINES, MARKERS, plain, scaled, styled
 
 
 def draw_least_load(found: Any) -> Any:
@@ -15,6 +15,7 @@ def draw_least_load(found: Any) -> Any:
     loads.
     """
     data, number = found.data, 0
+    factor, unit = scaled("N", data["size"], found.by_rule)
     with styled():
         figure, (left, right) = plt.subplots(1, 2, figsize=(10.0, 4.4))
         for t in range(data.sizes["temperature_c"]):
@@ -26,16 +27,18 @@ def draw_least_load(found: Any) -> Any:
                     "ls": LINES[t % len(LINES)],
                 }
                 label = f"{float(line['speed_rpm']):g} rpm, {float(line['temperature_c']):g} °C"
-                left.plot(line["size"], 100.0 * line["cage_slip"], label=label, **how)
-                right.plot(line["size"], 1e-6 * line["entry_power"], label=label, **how)
+                left.plot(factor * line["size"], 100.0 * line["cage_slip"], label=label, **how)
+                right.plot(factor * line["size"], 1e-6 * line["entry_power"], label=label, **how)
                 if np.isfinite(float(line["least"])):
-                    left.plot(float(line["least"]), 100.0 * found.slip, "o", mfc="none", ms=11, color=how["color"])
+                    left.plot(
+                        factor * float(line["least"]), 100.0 * found.slip, "o", mfc="none", ms=11, color=how["color"]
+                    )
                 number += 1
         left.axhline(100.0 * found.slip, color=GREY, lw=0.8, ls=":")
         for ax in (left, right):
-            ax.axvline(found.by_rule, color=GREY, lw=0.8)
+            ax.axvline(factor * found.by_rule, color=GREY, lw=0.8)
             ax.set_xscale("log")
-            ax.set_xlabel("load (N)")
+            ax.set_xlabel(f"load ({unit})")
             ax.set_ylim(bottom=0.0)
         left.set(ylabel="slip of the cage (%)", title=plain(data.attrs["bearing"]) or "bearing")
         right.set(ylabel="power per area (W/mm²)", title="rollers that enter the load zone")

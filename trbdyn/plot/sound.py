@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from trbdyn.plot.ring import mark_orders
-from trbdyn.plot.style import COLOURS, canvas, legend
+from trbdyn.plot.style import COLOURS, canvas, legend, scaled
 from trbdyn.results.forces import Along, On
 from trbdyn.results.result import Result
 
@@ -32,13 +32,14 @@ def force_spectrum(
     found = result.force_spectrum(on, along, segments=segments)
     top = min(highest or np.inf, found.force.nyquist)
     shown = (found.frequency > 0.0) & (found.frequency <= top)
-    amplitude = found.amplitude[shown]
+    factor, unit = scaled("N", found.amplitude[shown])
+    amplitude = factor * found.amplitude[shown]
     with canvas(ax, (7.2, 4.2), found.force.words) as ax:
         ax.loglog(found.frequency[shown], amplitude, color=COLOURS[0], linewidth=0.8)
         mark_orders(ax, result, found.shaft_frequency, (found.frequency[1], top), "{:.4g} Hz")
         if (peak := float(amplitude.max(initial=0.0))) > 0.0:
             ax.set_ylim(1e-4 * peak, 3.0 * peak)
-        ax.set(xlabel=f"frequency (Hz); {found.force.sampling}", ylabel="amplitude (N)")
+        ax.set(xlabel=f"frequency (Hz); {found.force.sampling}", ylabel=f"amplitude ({unit})")
         ax.set_xlim(float(found.frequency[1]), top)
         legend(ax, ncols=2)
     return ax

@@ -17,8 +17,9 @@ from matplotlib.axes import Axes
 from matplotlib.colors import Colormap, ListedColormap, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from trbdyn.base.display import step_of
 from trbdyn.base.own_files import output_path, write_whole
 from trbdyn.base.printable import printable
 from trbdyn.errors import FileError
@@ -119,6 +120,12 @@ def is_own(ax: Axes) -> bool:
 def sequence() -> Colormap:
     """A sequential map from dark blue to a yellow that still shows on white: even in lightness, so it works in grey."""
     return ListedColormap(plt.get_cmap("cividis")(np.linspace(0.0, 0.88, 256)), name="trbdyn")
+
+
+def scaled(unit: str, *values: ArrayLike) -> tuple[float, str]:
+    """Factor and unit in which numbers in SI are drawn, by the largest of them: those of `trbdyn.base.display`."""
+    sizes = [np.abs(np.asarray(part, dtype=float)) for part in values]
+    return step_of(unit, [float(one.max(initial=0.0, where=np.isfinite(one))) for one in sizes])
 
 
 def legend(ax: Axes, **options: Any) -> None:

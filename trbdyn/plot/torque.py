@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import matplotlib.pyplot as plt
 import numpy as np
 
-from trbdyn.plot.style import COLOURS, LINES, MARKERS, plain, styled
+from trbdyn.base.display import amount
+from trbdyn.plot.style import COLOURS, LINES, MARKERS, plain, scaled, styled
 
 if TYPE_CHECKING:
     import xarray
@@ -19,10 +20,11 @@ def draw_map(data: xarray.Dataset, temperature: int | None = None) -> Any:
     """
     chosen = range(data.sizes["temperature_c"]) if temperature is None else [temperature]
     lines = [data.isel(temperature_c=t, load=k).sortby("speed_rpm") for t in chosen for k in range(data.sizes["load"])]
+    factor, unit = scaled("N m", data["torque"])
     with styled():
         figure, (left, right) = plt.subplots(1, 2, figsize=(10.0, 4.4))
         for number, line in enumerate(lines):
-            _line(left, line, number, _words(line, len(chosen) > 1, data.sizes["load"] > 1))
+            _line(left, line, number, _words(line, len(chosen) > 1, data.sizes["load"] > 1), factor)
         _sources(right, lines[-1])
         for ax in (left, right):
             if data.sizes["speed_rpm"] > 1:
@@ -33,7 +35,7 @@ def draw_map(data: xarray.Dataset, temperature: int | None = None) -> Any:
             left.set_yscale("log")
         else:
             left.set_ylim(bottom=0.0)
-        left.set_ylabel("friction torque (N m)")
+        left.set_ylabel(f"friction torque ({unit})")
         left.legend()
         right.set_ylim(0.0, 100.0)
         right.set_ylabel("share of the torque (%)")
@@ -47,19 +49,22 @@ def _words(line: xarray.Dataset, with_temperature: bool, with_load: bool) -> str
     words = []
     if with_load or not with_temperature:
         radial = float(line["radial_load"])
-        words.append(f"{float(line['axial_load']):g} N axial" + (f", {radial:g} N radial" if radial else ""))
+        axial = amount(float(line["axial_load"]), "N", 6)
+        words.append(f"{axial} axial" + (f", {amount(radial, 'N', 6)} radial" if radial else ""))
     if with_temperature:
         words.append(f"{float(line['temperature_c']):g} °C")
     return ", ".join(words)
 
 
-def _line(ax: Any, line: xarray.Dataset, number: int, label: str) -> None:
-    speed, torque, settled = (line[name].values for name in ("speed_rpm", "torque", "settled"))
+def _line(ax: Any, line: xarray.Dataset, number: int, label: str, factor: float) -> None:
+    speed, settled, torque = line["speed_rpm"].values, line["settled"].values, factor * line["torque"].values
     colour, marker = COLOURS[number % len(COLOURS)], MARKERS[number % len(MARKERS)]
     ax.plot(speed, torque, color=colour, linestyle=LINES[number % len(LINES)], marker=marker, ms=4, label=label)
     ax.plot(speed[~settled], torque[~settled], linestyle="", marker=marker, ms=6, mfc="white", mec=colour)
     if "torque_low" in line:
-        ax.fill_between(speed, line["torque_low"], line["torque_high"], color=colour, alpha=0.15, lw=0.0)
+        ax.fill_between(
+            speed, factor * line["torque_low"], factor * line["torque_high"], color=colour, alpha=0.15, lw=0.0
+        )
 
 
 def _sources(ax: Any, line: xarray.Dataset) -> None:

@@ -12,9 +12,10 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
+from trbdyn.base.display import plain as number
 from trbdyn.errors import InputError
 from trbdyn.plot.cage import revolutions, turns_label
-from trbdyn.plot.style import COLOURS, GREY, LINES, canvas, legend, line, sequence, thin
+from trbdyn.plot.style import COLOURS, GREY, LINES, canvas, legend, line, scaled, sequence, thin
 from trbdyn.results import observables
 from trbdyn.results.result import Result
 
@@ -142,13 +143,22 @@ def torque_sources(result: Result, ax: Axes | None = None) -> Axes:
         if field.name.startswith("inner_torque_")
     }
     with canvas(ax, (6.4, 3.6), "Friction torque of the shaft by source") as ax:
-        total = result["inner_torque"]
-        line(ax, turned, total, 2, f"sum (mean {total.mean():.4g} N m)", linestyle="-", linewidth=1.0)
+        factor, unit = scaled("N m", result["inner_torque"])
+        total = factor * result["inner_torque"]
+        line(ax, turned, total, 2, f"sum (mean {number(total.mean())} {unit})", linestyle="-", linewidth=1.0)
         for index, (name, values) in enumerate(shares.items()):
             if np.any(values):
                 look = {"color": COLOURS[(0, 1, 3, 4, 5, 6)[index % 6]], "linestyle": LINES[index % len(LINES)]}
-                line(ax, turned, values, 0, f"{name} ({values.mean():.3g} N m)", linewidth=0.9, **look)
+                line(
+                    ax,
+                    turned,
+                    factor * values,
+                    0,
+                    f"{name} ({number(factor * values.mean(), 3)} {unit})",
+                    linewidth=0.9,
+                    **look,
+                )
         ax.axhline(0, color=GREY, linewidth=0.8)
-        ax.set(xlabel=turns_label(result), ylabel="friction torque (N m)", xlim=(turned[0], turned[-1]))
+        ax.set(xlabel=turns_label(result), ylabel=f"friction torque ({unit})", xlim=(turned[0], turned[-1]))
         legend(ax, ncols=2)
     return ax

@@ -6,10 +6,11 @@ from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime
 from typing import Any, Final
 
-from trbdyn.base.display import displayed
+from trbdyn.base.display import displayed, plain
 from trbdyn.base.version import __version__
+from trbdyn.model.assembly import Assembly
 from trbdyn.reporting.inputs import Row
-from trbdyn.reporting.tables import safe, table_of
+from trbdyn.reporting.tables import heads_of, safe, table_of
 from trbdyn.reporting.verdict import (
     CLOSURE_LIMIT,
     LIVES,
@@ -35,21 +36,30 @@ def front(
     numbers: Sequence[Mapping[str, Any]],
     sheets: Sequence[Rating | str],
     verdicts: Sequence[list[Sentence]],
+    assembly: Assembly | None = None,
 ) -> str:
-    """The sheet of one bearing, or of all on a shaft."""
+    """The sheet of one bearing, or of all on a shaft; what is the same for several bearings is told once."""
     several = len(results) > 1
     parts = [
         "<section class='sheet'>",
         "<h2>Sheet</h2>",
         f"<p>{'; '.join(f'{name} <b>{safe(text)}</b>' for name, text in _head(results))}</p>",
     ]
+    if assembly is not None:
+        rows = [("given", "shaft", assembly.title)]
+        rows += [("given", row[0], " ".join(_told(row))) for row in assembly._shown().rows]
+        parts.append(f"<h3>Shaft</h3>{_given(rows)}")
+    told: dict[tuple[str, str], str] = {}
     for one, name, listed, values, sheet, judged in zip(results, names, inputs, numbers, sheets, verdicts, strict=True):
-        if several:
-            parts.append(f"<h3>{safe(name)}</h3>")
-        parts.append(_inputs(one, listed))
+        found = [
+            (kind, words, f"as {told[kind, text]}" if (kind, text) in told else text)
+            for kind, words, text in _inputs(one, listed)
+        ]
+        told |= {(kind, text): name for kind, _, text in found if kind != "given" and not text.startswith("as ")}
+        parts.append(f"<h3>{f'{safe(name)}: inputs' if several else 'Inputs'}</h3>{_given(found)}")
         parts.append(_margins(values, sheet, judged))
     blank = "".join(f"<tr><td class='q'>{word}</td><td></td><td></td><td></td></tr>" for word in SIGNED)
-    heads = "<tr class='heads'><th></th><th>name</th><th>date</th><th>signature</th></tr>"
+    heads = heads_of("", "name", "date", "signature")
     parts.append(f"<table class='signed'>{heads}{blank}</table></section>")
     return "\n".join(parts)
 
@@ -67,7 +77,14 @@ def _head(results: Sequence[Result]) -> list[tuple[str, str]]:
     return [row for row in rows if row[1]]
 
 
-def _inputs(result: Result, listed: Sequence[Row]) -> str:
+def _told(row: Sequence[str]) -> list[str]:
+    """Value, unit and note of a row, as a phrase."""
+    value, unit, *note = [*row[1:], ""][:3]
+    return [f"{value} {unit}{',' if any(note) else ''}".strip(), *note]
+
+
+def _inputs(result: Result, listed: Sequence[Row]) -> list[tuple[str, str, str]]:
+    """Kind, name and text of what was given, estimated and assumed."""
     scene = result.scene
     rows: list[tuple[str, str, str]] = [("given", scene.bearing.name or "bearing", scene.title)]
     ratings = scene.bearing.ratings
@@ -93,13 +110,16 @@ def _inputs(result: Result, listed: Sequence[Row]) -> str:
     if assumed:
         more = f" and {len(assumed) - MOST_NAMES} more" if len(assumed) > MOST_NAMES else ""
         rows.append(("assumed", f"{len(assumed)} inputs", ", ".join(assumed[:MOST_NAMES]) + more))
+    return rows
+
+
+def _given(rows: Sequence[tuple[str, str, str]]) -> str:
     body = "".join(
         f"<tr class='{kind if kind != 'given' else ''}'><td class='mark'>{kind}</td><td class='q'>{safe(name)}</td>"
         f"<td class='{'' if kind == 'given' else 'small'}'>{safe(text)}</td></tr>"
         for kind, name, text in rows
     )
-    heads = "<tr class='heads'><th></th><th>input</th><th>value</th></tr>"
-    return f"<h3>Inputs</h3><table>{heads}{body}</table>"
+    return f"<table>{heads_of('', 'input', 'what it is')}{body}</table>"
 
 
 def _margins(values: Mapping[str, Any], sheet: Rating | str, judged: Sequence[Sentence]) -> str:
@@ -121,7 +141,12 @@ def _margins(values: Mapping[str, Any], sheet: Rating | str, judged: Sequence[Se
         shown = text or (lambda number: " ".join(displayed(number, unit, like=max(value, limit))).strip())
         verdict = "kept" if margin >= 1.0 else "NOT KEPT"
         rows.append(
-            (words, shown(value), f"{'at most' if most else 'at least'} {shown(limit)}", f"{margin:.3g}, {verdict}")
+            (
+                words,
+                shown(value),
+                f"{'at most' if most else 'at least'} {shown(limit)}",
+                f"{plain(margin, 3)}, {verdict}",
+            )
         )
 
     lives = {name: values[key] for key, name in LIVES.items() if isinstance(values.get(key), float)}

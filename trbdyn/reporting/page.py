@@ -10,6 +10,7 @@ from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 from trbdyn.base.shown import Shown
+from trbdyn.model.assembly import Assembly
 from trbdyn.plot.assembly import of_result
 from trbdyn.reporting import tables
 from trbdyn.reporting.captions import CAPTIONS
@@ -60,7 +61,7 @@ def page(
     heading = title or f"Report: {', '.join(bearings)} on one shaft"
     parts = [f"<h1>{safe(heading)}</h1>"]
     if len(results) == 1:
-        parts.append(_sheet(list(results[0].by_name.values()), bearings, reliability))
+        parts.append(_sheet(list(results[0].by_name.values()), bearings, reliability, results[0].assembly))
     for result, name in zip(results, names, strict=True):
         parts.append(_shaft(result, name if len(results) > 1 else "", pictures, reliability))
     own = of_result(results[0])
@@ -103,12 +104,15 @@ def judgement(result: Result) -> list[Sentence]:
     return verdict(result, _with_lives(result.summary(), sheet_of(result)))
 
 
-def _sheet(results: Sequence[Result], names: Sequence[str], reliability: float) -> str:
+def _sheet(
+    results: Sequence[Result], names: Sequence[str], reliability: float, assembly: Assembly | None = None
+) -> str:
     """The first page, to be signed."""
     sheets = [sheet_of(result, reliability) for result in results]
     numbers = [_with_lives(result.summary(), sheet) for result, sheet in zip(results, sheets, strict=True)]
     judged = [verdict(result, values) for result, values in zip(results, numbers, strict=True)]
-    return front(results, names, [rows(result.scene) for result in results], numbers, sheets, judged)
+    listed = [rows(result.scene) for result in results]
+    return front(results, names, listed, numbers, sheets, judged, assembly)
 
 
 def _body(

@@ -47,7 +47,7 @@ def differences(inputs: Sequence[list[Row]], names: Sequence[str]) -> str:
         + f"<td class='u'>{safe((tables[0].get(path) or tables[1][path]).unit)}</td></tr>"
         for path in paths
     )
-    shown = f"<table>{_heads('input', *names, 'unit')}{body}</table>"
+    shown = f"<table>{heads_of('input', *names, 'unit')}{body}</table>"
     if len(paths) <= MOST_DIFFERENCES:
         return f"<h3>Inputs that differ</h3>{shown}"
     return f"<details><summary>{len(paths)} inputs that differ</summary>{shown}</details>"
@@ -57,8 +57,14 @@ def _value(table: Mapping[str, Row], path: str) -> str:
     return table[path].value if path in table else "-"
 
 
-def _heads(*words: str) -> str:
-    return "<tr class='heads'>" + "".join(f"<th>{safe(word)}</th>" for word in words) + "</tr>"
+TEXTS: Final = ("", "unit", "what it means", "where it comes from", "what it is", "input", "name", "date", "signature")
+"""Heads of columns that are no numbers, beside the first one."""
+
+
+def heads_of(*words: str) -> str:
+    """The head of a table, which each printed page repeats; above numbers it is set in line with them."""
+    made = [f"<th{' class=n' if k and word not in TEXTS else ''}>{safe(word)}</th>" for k, word in enumerate(words)]
+    return f"<thead><tr class='heads'>{''.join(made)}</tr></thead>"
 
 
 def table_of(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
@@ -71,7 +77,7 @@ def table_of(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
         + "</tr>"
         for row in rows
     )
-    return f"<table>{_heads(*head)}{body}</table>"
+    return f"<table>{heads_of(*head)}{body}</table>"
 
 
 def further(shown: Sequence[Shown]) -> str:
@@ -136,7 +142,7 @@ def key_numbers(summaries: Sequence[Mapping[str, Any]], names: Sequence[str]) ->
         if any(value is not None for value in values):
             widths = [(entry.get("confidence") or {}).get(key) for entry in summaries]
             body.append(_number(row.words, row.unit, values, widths, None, []))
-    heads = _heads("quantity", *_columns(names), "unit")
+    heads = heads_of("quantity", *_columns(names), "unit")
     return f"<table>{heads}{''.join(body)}</table>" if body else ""
 
 
@@ -164,7 +170,7 @@ def numbers(
         else:
             widths = [(entry.get("confidence") or {}).get(key) for entry in summaries]
             body.append(_number(words, unit, values, widths, row.meaning, _said(key, values, checks, names)))
-    heads = _heads("quantity", *_columns(names), "unit", "what it means")
+    heads = heads_of("quantity", *_columns(names), "unit", "what it means")
     listed = f"<dl class='notes'>{''.join(notes)}</dl>" if notes else ""
     return f"<details><summary>All numbers and what they mean</summary><table>{heads}{''.join(body)}</table>{listed}</details>"
 
@@ -258,7 +264,7 @@ def inputs(listed_inputs: Sequence[list[Row]], names: Sequence[str]) -> str:
             for row in listed
         )
         of = f" of {safe(name)}" if len(listed_inputs) > 1 else ""
-        heads = _heads("input", "value", "unit", "", "what it is")
+        heads = heads_of("input", "value", "unit", "", "what it is")
         tables.append(f"<details><summary>All inputs{of}</summary><table>{heads}{body}</table></details>")
     note = (
         "<p>Marked as <b>assumed</b>: no source gives the value, it is the package's default. "

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn import laws
+from trbdyn.base.display import amount, displayed
 from trbdyn.base.expected import expect
 from trbdyn.base.shown import Shown, Tabled
 from trbdyn.base.validation import number_of
@@ -177,20 +178,19 @@ class ContactPressure(Tabled):
     def _shown(self) -> Shown:
         along = self.place[1]
         rows: list[tuple[str, ...]] = [
-            ("largest pressure", f"{1e-9 * self.largest:.4g}", "GPa", f"{1e3 * along:.4g} mm from mid length"),
+            ("largest pressure", *displayed(self.largest, "Pa"), f"{1e3 * along:.4g} mm from mid length"),
             (
                 "largest pressure of slices",
-                f"{1e-9 * float(self.slice_pressure.max()):.4g}",
-                "GPa",
+                *displayed(float(self.slice_pressure.max()), "Pa"),
                 "Hertz, each by itself",
             ),
-            ("load", f"{self.load:.5g}", "N", f"moment about mid length {self.moment:.3g} N m"),
+            ("load", *displayed(self.load, "N", 5), f"moment about mid length {amount(self.moment, 'N m', 3)}"),
         ]
         for name, (one, other), ratio in zip(("small end", "large end"), self.edges, self.edge_ratios, strict=True):
             said = (
-                f"{ratio:.3g} times that of slices, {1e-9 * other:.4g} GPa" if other > 0.0 else "slices have none there"
+                f"{ratio:.3g} times that of slices, {amount(other, 'Pa')}" if other > 0.0 else "slices have none there"
             )
-            rows.append((f"pressure at the {name}", f"{1e-9 * one:.4g}", "GPa", said))
+            rows.append((f"pressure at the {name}", *displayed(one, "Pa"), said))
         title = f"Roller {self.roller} on the {self.raceway} raceway at {self.time:.4g} s"
         return Shown(title=title, rows=tuple(rows), notes=self.warnings)
 
@@ -381,7 +381,7 @@ def _warnings(found: ContactPressure, uneven: float) -> tuple[str, ...]:
     for name, off, (one, other) in zip(names, found.slices_are_off, found.edges, strict=True):
         if off:
             said.append(
-                f"Slices are off at the {name} end: {1e-9 * other:.3g} GPa there, {1e-9 * one:.3g} GPa as half spaces."
+                f"Slices are off at the {name} end: {amount(other, 'Pa', 3)} there, {amount(one, 'Pa', 3)} as half spaces."
             )
     sharp = [name for name, is_sharp in zip(names, found.sharp_edges, strict=True) if is_sharp]
     if sharp:
@@ -420,6 +420,6 @@ def edge_warnings(result: Result) -> list[str]:
             if off:
                 out.append(
                     f"Slices are off at the {end} end of roller {found.roller} on the {raceway} raceway: they give "
-                    f"{1e-9 * other:.3g} GPa there, half spaces {1e-9 * one:.3g} GPa (trb.contact_pressure)."
+                    f"{amount(other, 'Pa', 3)} there, half spaces {amount(one, 'Pa', 3)} (trb.contact_pressure)."
                 )
     return out

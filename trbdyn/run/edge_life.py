@@ -8,6 +8,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from trbdyn.base.display import displayed
 from trbdyn.base.expected import expect
 from trbdyn.base.shown import Shown, Tabled
 from trbdyn.model.scene import Scene
@@ -55,7 +56,7 @@ class EdgeLife(Tabled):
             ("L10r, factor f_k", f"{self.with_factor:.4g}", turns, "slices times f_k of ISO/TS 16281:2008, 4.3.2"),
             ("L10r, no factor", f"{self.without:.4g}", turns, "slices alone"),
             ("L10r, half spaces", f"{self.with_pressures:.4g}", turns, "pressures that feel each other and the ends"),
-            ("largest pressure", f"{1e-9 * self.largest_pressure:.4g}", "GPa", "of half spaces"),
+            ("largest pressure", *displayed(self.largest_pressure, "Pa"), "of half spaces"),
         )
         title = f"Reference life by {self.contacts} contacts at {self.records} moment{'s' if self.records > 1 else ''}"
         note = (
