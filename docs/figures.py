@@ -52,6 +52,23 @@ def paper() -> trb.Scene:
     return Point(FIGURES["12a"][-1], "whirl").scene()
 
 
+def combined() -> trb.Scene:
+    """A point of the paper's figure 16a, with the loaded zone where rollers descend."""
+    from paper.points import FIGURES, Point
+    from paper.statements import NAMED
+
+    return Point(FIGURES["16a"][1].within(NAMED), "equal", 1).scene()
+
+
+def campaign() -> dict[str, float]:
+    """What the picture of the paper's statements is drawn from."""
+    from paper.overview import kept
+
+    points = kept()["points"]
+    reach = sum(point["whirl_radius_over_cpr"]["p95"] for point in points.values())
+    return {"points": float(len(points)), "reach of all": reach}
+
+
 @cache
 def summary(of: Callable[[], trb.Scene], integrator: str = "auto") -> dict[str, float]:
     """What a scene gives, from a short run."""
@@ -154,6 +171,22 @@ def benchmark(*words: str) -> Callable[[Path], None]:
     return make
 
 
+def statements(path: Path) -> None:
+    """The paper's statements beside what the campaign found."""
+    from paper.overview import draw
+
+    draw(path)
+
+
+def loci(path: Path) -> None:
+    """The cage's locus under combined load with the named set of inputs; minutes."""
+    words = ["--starts", "equal", "--directions", "180", "--scatters", "0.2", "--seeds", "1", "--max-time", "3"]
+    with tempfile.TemporaryDirectory() as folder:
+        command = [sys.executable, "paper", "-o", folder, *words, "--points", "*_4930N_*N_180deg_scatter0.2um"]
+        subprocess.run(command, cwd=ROOT / "benchmarks", check=True)
+        path.write_bytes((Path(folder) / "figures" / "fig_11a_16a.png").read_bytes())
+
+
 PICTURES: Final[dict[str, tuple[Callable[[Path], None], Callable[[], dict[str, float]]]]] = {
     "benchmarks/pictures/demo_cage_locus.png": (locus, partial(numbers, scene)),
     "docs/pictures/report.png": (report, partial(numbers, scene)),
@@ -163,10 +196,12 @@ PICTURES: Final[dict[str, tuple[Callable[[Path], None], Callable[[], dict[str, f
     "benchmarks/pictures/cage_map.png": (benchmark("cage_map.py"), partial(numbers, scene, MOTION)),
     "benchmarks/pictures/work_precision.png": (benchmark("work_precision.py"), partial(numbers, scene, COST)),
     "benchmarks/pictures/rolling_laws.png": (benchmark("rolling_laws.py"), laws),
+    "docs/pictures/paper_statements.png": (statements, campaign),
+    "docs/pictures/paper_16a.png": (loci, partial(numbers, combined, MOTION)),
     "benchmarks/paper/figures/fig_08a_12a.png": (benchmark("-m", "paper"), partial(numbers, paper, MOTION)),
 }
 """Pictures, who makes them, and the numbers that say whether they are old."""
-OWN: Final = (locus, report, viewer, stribeck, app)
+OWN: Final = (locus, report, viewer, stribeck, app, statements)
 """Makers of minutes, that need no name."""
 
 

@@ -51,6 +51,14 @@ def test_tables_of_benchmarks_say_which_are_older_than_the_defaults(recorded: An
         assert recorded.old_stamps(text, mark) == [], f"{page.name}: python docs/recorded.py --mark, or measure again"
 
 
+def test_the_page_of_the_paper_has_the_numbers_of_the_campaign() -> None:
+    from paper.overview import SHOWN, kept, table
+
+    found = kept()
+    assert set(SHOWN) <= {entry["key"] for entry in found["statements"]}
+    assert table(found) in (ROOT / "docs" / "paper.md").read_text(encoding="utf-8")
+
+
 OLD_TABLE = """
 3000 rpm, 4930 N axial load, 50 turns from a whirling start, from `summary.json`:
 
