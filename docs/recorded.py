@@ -36,7 +36,7 @@ STAMPED: Final = tuple(
 )
 """Pages whose tables carry a line of when they were measured. The logs of work are histories, and old by their nature."""
 MEASURED: Final = "measured"
-"""Head of the column whose figures come from commands."""
+"""How heads of columns begin whose figures come from commands."""
 OLDER: Final = "Older than today's defaults: effects, tolerances and integrator are those of then."
 
 FIGURE: Final = re.compile(r"(-?\d+(?:\.\d+)?(?:e-?\d+)?)<!-- (\w+)\.([\w.]+) -->")
@@ -61,7 +61,52 @@ def of_summary(summary: Mapping[str, Any]) -> dict[str, float]:
     return {name: float(value) for name, value in found.items() if not isinstance(value, bool)}
 
 
-MAKERS: Final[dict[str, tuple[str, Callable[[], dict[str, float]]]]] = {"demo": ("make demo", demo)}
+CHANGES: Final[dict[str, dict[str, Any]]] = {
+    "minimal": {"effects": "minimal"},
+    "dry": {"effects.lubrication": "dry"},
+    "without_rolling_resistance": {"effects.rolling_resistance": False, "effects.rolling_pressure_force": False},
+    "without_pressure_force": {"effects.rolling_pressure_force": False},
+    "without_heat": {"effects.thermal": False},
+    "without_damping": {"effects.damping": "off"},
+    "exponential_mixing": {"effects.mixed_law": "exponential"},
+    "pocket_film": {"effects.pocket_film": 5e-5},
+    "drag": {"effects.oil_fill": 0.1},
+    "flooded_gaps": {"effects.flooded_gaps": True},
+    "hysteresis": {"effects.hysteresis": 0.01},
+    "oil_height": {"effects.oil_height": 2e-5},
+    "rib_turning": {"effects.rib_turning": True},
+    "guiding_land": {"effects.guidance": "inner_land"},
+    "spacer": {"effects.bodies": "rollers_and_spacer"},
+    "nodes_8": {"effects.n_slices": 8},
+    "nodes_24": {"effects.n_slices": 24},
+}
+"""Changes of the default scene whose evaluations are counted; those of the table of effects that change the scene come after."""
+
+
+def instructions() -> dict[str, float]:
+    """Instructions of one force evaluation with the default effects (thousands), and by how much each change alters them (%)."""
+    from effect_cost.catalogue import EFFECTS
+    from effect_cost.instructions import counted, described
+
+    import trbdyn as trb
+
+    base = trb.cases.scene_30310(3000.0, 4930.0)
+    scenes = {"default": base}
+    for name, change in CHANGES.items():
+        scenes[name] = base.replace(effects=trb.Effects.minimal()) if name == "minimal" else base.replace(change)
+    scenes |= {effect.name.replace(" ", "_"): base.replace(dict(effect.scene)) for effect in EFFECTS if effect.scene}
+    with tempfile.TemporaryDirectory() as folder:
+        # the first evaluation of a process takes some percent more
+        counts = counted([described(base), *map(described, scenes.values())], Path(folder))[1:]
+    found = dict(zip(scenes, counts, strict=True))
+    default = found.pop("default")
+    return {"default": default} | {name: 100.0 * (count / default - 1.0) for name, count in found.items()}
+
+
+MAKERS: Final[dict[str, tuple[str, Callable[[], dict[str, float]]]]] = {
+    "demo": ("make demo", demo),
+    "instructions": ("python docs/recorded.py instructions", instructions),
+}
 """Commands, and who runs them. Records without a maker are figures of long runs, with the command that gave them."""
 
 
@@ -117,17 +162,19 @@ def unlike(text: str, records: Mapping[str, Record]) -> list[str]:
 
 def without_record(text: str) -> list[str]:
     """Cells of columns of measured values with a figure that names no record."""
-    out, column = [], None
+    out: list[str] = []
+    columns: list[int] | None = None
     for line in text.splitlines():
         if not line.startswith("|"):
-            column = None
+            columns = None
             continue
         cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
-        if column is None:
-            heads = [index for index, head in enumerate(cells) if head.partition(":")[0] == MEASURED]
-            column = heads[0] if heads and "band" not in cells else -1
-        elif column >= 0 and re.search(r"\d", re.sub(r"`[^`]*`|\([^)]*\)", "", FIGURE.sub("", cells[column]))):
-            out.append(f"{cells[0]}: {cells[column]}")
+        if columns is None:
+            columns = [index for index, head in enumerate(cells) if head.startswith(MEASURED) and "band" not in cells]
+            continue
+        for cell in (cells[column] for column in columns):
+            if re.search(r"\d", re.sub(r"`[^`]*`|\([^)]*\)", "", FIGURE.sub("", cell))):
+                out.append(f"{cells[0]}: {cell}")
     return out
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -57,6 +58,16 @@ def test_the_page_of_the_paper_has_the_numbers_of_the_campaign() -> None:
     found = kept()
     assert set(SHOWN) <= {entry["key"] for entry in found["statements"]}
     assert table(found) in (ROOT / "docs" / "paper.md").read_text(encoding="utf-8")
+
+
+def test_notebooks_say_when_their_outputs_are_older_than_the_defaults(recorded: Any, mark: str) -> None:
+    notebooks = sorted((ROOT / "notebooks").glob("*.ipynb"))
+    assert notebooks
+    for path in notebooks:
+        cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
+        text = "\n\n".join("".join(cell["source"]) for cell in cells if cell["cell_type"] == "markdown")
+        assert recorded.STAMP.search(text), path.name
+        assert recorded.old_stamps(text, mark) == [], f"{path.name}: make notebooks, and the line that says when"
 
 
 OLD_TABLE = """
