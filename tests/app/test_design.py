@@ -170,6 +170,15 @@ def test_a_pair_of_two_bearings_with_gear_fits_and_oil_is_the_program_that_is_sh
     assert made.subject.loads[0].force[2] == pytest.approx(2 * 200 / 0.08 * 0.2679492, rel=1e-6)  # Ft tan(beta)
 
 
+@pytest.mark.parametrize(("column", "acts"), [("torque", "gear"), ("wheel_load", "wheel"), ("cornering", "wheel")])
+def test_a_column_of_something_that_does_not_act_is_refused(column: str, acts: str) -> None:
+    for pair, of in ((False, ""), (True, ""), (False, acts), (True, "wheel" if acts == "gear" else "gear")):
+        chosen = design(pair=pair)
+        chosen.acts, chosen.spectrum = of, f"share,{column}\n1,0.5"
+        with pytest.raises(ValueError, match=f"{column}: must not be given here"):
+            cases_of(chosen)
+
+
 def test_a_spectrum_may_have_semicolons_and_decimal_commas() -> None:
     table = "name;share;speed;axial_load\nidle;80,5;800;1500,5\nfull;19,5;1500;9000"
     chosen = design()

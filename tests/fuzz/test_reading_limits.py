@@ -160,6 +160,42 @@ def step_files() -> dict[str, str]:
     }
 
 
+def rexs_files() -> dict[str, str]:
+    """Units with many of each; 80 bytes each, and what the bearings need."""
+    attribute = "<attribute id='{}' unit='{}'>{}</attribute>".format
+    kind = "rolling_bearing_with_catalog_geometry"
+    bearing = f"<component id='b{{}}' type='{kind}'>{attribute('catalogue_designation', '', '32208')}</component>"
+    forces = "".join(attribute(one, "N", 100) for one in ("axial_force", "radial_force_in_v", "radial_force_in_w"))
+    inside = f"<component id='b{{}}'>{forces}{attribute('speed_inner_ring', '1 / min', 9)}</component>"
+    share = f"<component id='c0'>{attribute('load_duration_fraction', '%', 1)}</component>"
+    oil = attribute("viscosity_at_40_degree_celsius", "mm^2 / s", 100) + attribute(
+        "viscosity_at_100_degree_celsius", "mm^2 / s", 11
+    )
+    warm = f"<component id='o' type='lubricant'>{oil}{attribute('temperature_lubricant', 'C', 70)}</component>"
+    casing = "<component id='c{}' type='gear_casing'/>"
+
+    def unit(bearings: int, casings: int, cases: int, relations: int = 0) -> str:
+        parts = "".join(map(bearing.format, range(bearings))) + "".join(map(casing.format, range(casings))) + warm
+        joined = "<relation><ref id='b0'/><ref id='s'/></relation>" * relations
+        loads = "".join(map(inside.format, range(bearings)))
+        listed = "".join(f"<load_case id='{n}'>{loads}{share}</load_case>" for n in range(cases))
+        return f"<model><relations>{joined}</relations><components>{parts}</components>{listed}</model>"
+
+    return {
+        "entities": "<!DOCTYPE a [<!ENTITY a 'aaaaaaaaaa'><!ENTITY b '&a;&a;&a;&a;&a;'>]><model>&b;</model>",
+        "deep elements": "<a>" * (MB // 3),
+        "many elements": f"<model>{'<a/>' * (MB // 5)}</model>",
+        "many attributes": "<model " + " ".join(f"a{n}='1'" for n in range(MB // 12)) + "/>",
+        "a unit that is read": unit(1, 1, 3),
+        "many bearings": unit(1900, 1, 1),
+        "as many bearings as are read": unit(50, 1, 10),
+        "many casings and cases": unit(1, 10_000, 900),
+        "many cases": unit(1, 1, 1900),
+        "as many cases as are read": unit(1, 19, 500),
+        "many relations": unit(1, 1, 1, 20_000),
+    }
+
+
 def stl_files() -> dict[str, bytes]:
     count = (MB - 84) // 50
     random = np.random.default_rng(0)
@@ -216,6 +252,8 @@ def readers(folder: Path, small_result: bytes) -> dict[str, tuple[Path, Callable
     add("CSV profile", "many rows", ".csv", f"station_m,drop_um\n{rows}", trb.Profile.from_csv)
     for name, text in step_files().items():
         add("STEP", name, ".step", text, lambda path: trb.Bearing.replace(bearing, cage=cage_of(path, bearing)))
+    for name, text in rexs_files().items():
+        add("REXS", name, ".rexs", text, trb.read_rexs)
     for name, data in stl_files().items():
         add("STL", name, ".stl", data, lambda path: cage_of(path, bearing))
     for size in (1e3, 1e6, 1e9):
@@ -253,7 +291,8 @@ def small_result(tmp_path_factory: pytest.TempPathFactory) -> bytes:
 
 
 FIRST = ("deep key of 20000 parts", "many unknown keys", "arc of 1e8 mm", "arc of nan", "polyline", "line to inf",
-         "close together", "deep brackets", "box of 1e+06 mm", "all at one place", "records True", "many cases")  # fmt: skip
+         "close together", "deep brackets", "box of 1e+06 mm", "all at one place", "records True", "many cases", "many casings",
+         "a unit that is read")  # fmt: skip
 """Those that are read in every run of the tests."""
 
 
@@ -291,6 +330,7 @@ def test_what_is_no_regular_file_is_refused_at_once(tmp_path: Path, kind: str) -
         ".modes": CageModes.load,
         ".profile": trb.Profile.from_csv,
         ".table": trb.designations,
+        ".rexs": trb.read_rexs,
         ".spectrum": lambda path: trb.spectrum("rig_30310", path),
         ".assembly": trb.load_assembly,
         ".tables": read_tables,

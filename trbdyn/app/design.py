@@ -187,7 +187,8 @@ def scene_fields() -> list[Field]:
 def run_fields() -> list[Field]:
     """Length and accuracy of a run."""
     turns = Field("run.revolutions", "turns of the shaft", default=5.0, meaning="Length of the run.")
-    return [turns, *of.fields_of(RunOptions(), "run.", ("accuracy",))]
+    (accuracy,) = of.fields_of(RunOptions(), "run.", ("accuracy",))
+    return [turns, replace(accuracy, meaning="Preset of the tolerances.")]
 
 
 def built(design: Design) -> Built:

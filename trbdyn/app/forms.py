@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import re
 import threading
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final, cast
 
@@ -247,7 +249,7 @@ def show_bearing(page: Page) -> None:
     }
     if hints:
         ui.label("Estimated: type what you know better").classes("text-lg font-medium")
-        show_fields(page, [listed.pop(path) for path in hints], hints)
+        show_fields(page, [_with_part(listed.pop(path)) for path in hints], hints)
     shape = page.bench.design.typed.get(of.SHAPE, "default")
     plays = [
         listed.pop(f"bearing.cage.{name}")
@@ -259,6 +261,12 @@ def show_bearing(page: Page) -> None:
         show_folded(page, title, [one for path, one in listed.items() if _part(path) == part])
 
 
+def _with_part(one: Field) -> Field:
+    """A field whose words name the part that it is of, for a place below no heading of that part."""
+    words = one.path.removeprefix("bearing.").removesuffix("_deg").replace(".", " ").replace("_", " ")
+    return replace(one, words=re.sub(r"^n (?=\w)", "number of ", words))
+
+
 def _part(path: str) -> str:
     part = path.split(".")[1]
     return part if part in GROUPS and path.count(".") > 1 else ""
@@ -266,7 +274,8 @@ def _part(path: str) -> str:
 
 def _band(page: Page, low: float, high: float, si: str, source: str) -> str:
     unit = page.bench.design.unit(si) if si else ""
-    band = f"{units.show(low, si, unit)} to {units.show(high, si, unit)} {unit}" if si else f"{low:g} to {high:g}"
+    ends = [units.show(end, si or "1", unit or "1", 4) for end in (low, high)]
+    band = f"{' to '.join(ends)} {unit}".rstrip()
     return f"estimated, {band}: {source}"
 
 

@@ -20,6 +20,12 @@ COLUMNS: Final = {
     "temperature": "lubricant.temperature_c",
 }
 """Columns by the fields that they change; numbers are in the units of the page."""
+NEEDS: Final = {
+    "torque": ("gear", "two bearings on a shaft with a gear"),
+    "wheel_load": ("wheel", "a wheel hub"),
+    "cornering": ("wheel", "a wheel hub"),
+}
+"""Columns of what acts on some shafts alone: what that is, and how the page calls it."""
 MOST: Final = 200
 """Most load cases."""
 
@@ -39,6 +45,9 @@ def cases_of(design: Design) -> list[tuple[str, float, dict[str, Any]]]:
         name = row.get("name") or f"case {index}"
         if unknown := sorted(set(row) - {"name", "share", *COLUMNS}):
             raise ValueError(f"{unknown[0]}: must be one of the columns name, share, {', '.join(COLUMNS)}")
+        for column, (acts, words) in NEEDS.items():
+            if row.get(column) and not (design.pair and design.acts == acts):
+                raise ValueError(f"{column}: must not be given here: it is of {words}, see What turns?")
         try:
             share = float(row.get("share", ""))
         except ValueError:

@@ -24,7 +24,7 @@ STYLE: Final = """
 .q-field__messages { line-height: 1.25; }
 .trb-text { white-space: pre-wrap; font-family: monospace; font-size: 0.8rem; overflow-wrap: anywhere; }
 .nicegui-content { padding: 0.75rem; }
-.trb-upload .q-uploader__list { display: none; }
+.trb-upload .q-uploader__list, .trb-upload .q-uploader__subtitle { display: none; }
 .q-tab-panel { padding: 0.5rem 0; }
 img, iframe { max-width: 100%; }
 """

@@ -15,6 +15,7 @@ UNITS: Final[dict[str, dict[str, str]]] = {
     "kg": {"kg": "1", "g": "0.001", "lb": "0.45359237"},
     "Pa": {"MPa": "1000000", "GPa": "1000000000", "Pa": "1"},
     "N m": {"N m": "1", "N mm": "0.001"},
+    "kg m2": {"kg mm2": "0.000001", "kg m2": "1"},
     "kg m": {"g mm": "0.000001", "kg m": "1"},
     "s": {"s": "1", "ms": "0.001"},
 }
@@ -63,6 +64,6 @@ def read(text: str, si: str, unit: str) -> float:
         raise ValueError("must be a finite number") from None
 
 
-def show(value: float, si: str, unit: str) -> str:
-    """A number of SI units in another unit, with six digits."""
-    return f"{value / float(UNITS.get(si, {si: '1'})[unit]):.6g}"
+def show(value: float, si: str, unit: str, digits: int = 6) -> str:
+    """A number of SI units in another unit, with so many digits."""
+    return f"{value / float(UNITS.get(si, {si: '1'})[unit]):.{digits}g}"

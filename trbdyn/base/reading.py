@@ -39,6 +39,16 @@ MOST_LINES: Final = 10_000
 """Most entities of a drawn line that are joined."""
 LARGEST_DRAWN: Final = 20.0
 """Farthest place in a drawing from its origin (m)."""
+MOST_CASES: Final = 1000
+"""Most load cases of a spectrum."""
+MOST_LOADS: Final = 500
+"""Most load cases of all bearings of a gear unit together."""
+MOST_PARTS: Final = 2000
+"""Most components of a gear unit."""
+MOST_BEARINGS: Final = 50
+"""Most bearings of a gear unit."""
+MOST_AROUND: Final = 20
+"""Most casings, oils and units of a gear unit."""
 MOST_TRIANGLES: Final = 1_000_000
 """Most triangles that cover a drawing."""
 

@@ -61,7 +61,8 @@ def page(
     heading = title or f"Report: {', '.join(bearings)} on one shaft"
     parts = [f"<h1>{safe(heading)}</h1>"]
     if len(results) == 1:
-        parts.append(_sheet(list(results[0].by_name.values()), bearings, reliability, results[0].assembly))
+        whole = results[0].assembly if isinstance(results[0], AssemblyResult) else None
+        parts.append(_sheet(list(results[0].by_name.values()), bearings, reliability, whole))
     for result, name in zip(results, names, strict=True):
         parts.append(_shaft(result, name if len(results) > 1 else "", pictures, reliability))
     own = of_result(results[0])

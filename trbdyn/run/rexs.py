@@ -15,6 +15,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 from trbdyn.base.expected import expect
 from trbdyn.base.own_files import file_path, write_whole
+from trbdyn.base.reading import MOST_AROUND, MOST_BEARINGS, MOST_LOADS, MOST_PARTS
 from trbdyn.base.safe_xml import read_xml, xml_text
 from trbdyn.base.version import __version__
 from trbdyn.errors import FileError, InputError
@@ -109,10 +110,18 @@ def read_rexs(
     """
     root = _root(path)
     parts = _components(root)
+    chosen = {
+        key: part
+        for key, part in parts.items()
+        if part.get("type") in BEARINGS and _text(part, "bearing_type") in (TAPERED, None)
+    }
+    _few(path, "components", len(parts), MOST_PARTS)
+    _few(path, "relations", sum(1 for _ in root.iter("relation")), MOST_PARTS)
+    _few(path, "load cases of its bearings", len(chosen) * sum(1 for _ in root.iter("load_case")), MOST_LOADS)
+    _few(path, "bearings", len(chosen), MOST_BEARINGS)
+    _few(path, "casings, oils and units", len(_around(parts)), MOST_AROUND)
     found = {}
-    for key, part in parts.items():
-        if part.get("type") not in BEARINGS or _text(part, "bearing_type") not in (TAPERED, None):
-            continue
+    for key, part in chosen.items():
         bearing = (bearings or {}).get(key) or _bearing(part, path)
         found[key] = Spectrum(_cases(root, parts, part, bearing, lubricant, temperature_c, path))
     if not found:
@@ -181,6 +190,16 @@ def _root(path: str | os.PathLike[str]) -> Element:
 def _components(root: Element) -> dict[str, Element]:
     listed = root.find("components")
     return {} if listed is None else {str(one.get("id")): one for one in listed.findall("component")}
+
+
+def _around(parts: Mapping[str, Element]) -> list[str]:
+    """Ids of what has the numbers of the whole unit."""
+    return [one for one, other in parts.items() if other.get("type") in ("gear_casing", "lubricant", "gear_unit")]
+
+
+def _few(path: object, what: str, count: int, most: int) -> None:
+    if count > most:
+        raise FileError(f"{path}: has {count} {what}: at most {most} are read")
 
 
 def _attribute(part: Element | None, name: str) -> Element | None:
@@ -265,7 +284,7 @@ def _cases(
         speed = number("rotational_speed", shaft) if speed is None else speed
         if speed is None:
             raise InputError.of((where, "rotational_speed"), None, "must be given at the bearing or its shaft (rpm)")
-        others = [one for one, other in parts.items() if other.get("type") in ("gear_casing", "lubricant", "gear_unit")]
+        others = _around(parts)
         warm = number("temperature_lubricant", key, *others)
         share = next((value for one in ("load_duration_fraction", "operating_time_fraction")
                       if (value := number(one, *others)) is not None), None)  # fmt: skip

@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from trbdyn.base.own_files import file_path
-from trbdyn.base.reading import read_input_text
+from trbdyn.base.reading import MOST_CASES, read_input_text
 from trbdyn.base.validation import as_number, whole_number_of
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.assembly import Subject
@@ -19,7 +19,6 @@ from trbdyn.model.spectrum import LoadCase, Spectrum
 from trbdyn.study.definition import Base
 
 OWN_COLUMNS: Final = ("name", "share")
-MOST_CASES: Final = 1000
 MOST_COLUMNS: Final = 100
 
 
