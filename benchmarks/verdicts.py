@@ -45,13 +45,13 @@ LONG: Final = 40.0
 """Turns of the shaft of a long run from which slip is taken."""
 STEADY: Final = 32.0
 """Turns of the shaft of a long run from which power is taken."""
-OUTSIDE: Final = (0.0, 20.0, 40.0, 60.0)
+OUTSIDE: Final = (20.0, 60.0)
 """Temperatures outside of a preloaded pair (C)."""
 LIMIT: Final = 0.1
 """Slip up to which rollers are taken to roll (1), as `trb.least_load` takes it."""
 KELVIN: Final = 2.0
 """Difference of a temperature, beside a twentieth of the rise, from which on it counts as wrong (K)."""
-SHARE: Final = 0.15
+SHARE: Final = 0.3
 """Share of a step of the iteration of a preloaded pair."""
 HOTTEST: Final = 180.0
 """Parts hotter than this have no balance (C)."""
@@ -328,7 +328,7 @@ def main(arguments: Sequence[str] | None = None) -> common.Report:
             if question == "preload" and not subject.is_cylindrical:
                 arrangements = ("face to face",) if options.quick else ("face to face", "back to back")
                 for arrangement in arrangements:
-                    preload(report, subject, arrangement, OUTSIDE[1:2] if options.smoke else OUTSIDE, 120)
+                    preload(report, subject, arrangement, OUTSIDE[:1] if options.smoke else OUTSIDE, 80)
             if question == "slip":
                 for share in (MEDIUM,) if options.smoke else (LIGHT, MEDIUM):
                     slip(report, subject, share, long)

@@ -36,7 +36,7 @@ TABLE: dict[str, tuple[str, dict[str, Any], set[str], dict[str, float], int]] = 
         ROUND,
         1,
     ),
-    "machined with fillets": ("machined", {"corner": 0.12e-3}, BARS | WALLS, PLANES, 1),
+    "machined with fillets": ("machined", {"corner": 0.3e-3}, BARS | WALLS, PLANES, 1),
     "relieved": ("relieved", {}, BARS | RELIEF | WALLS, PLANES, 1),
     "relieved, one pocket broken": ("relieved", {"broken": True}, BARS | WALLS, PLANES, 2),
 }
