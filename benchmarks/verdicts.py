@@ -92,7 +92,9 @@ class Subject:
     def loads(self, share: float) -> tuple[float, float]:
         """Axial and radial load for a share of the dynamic rating (N)."""
         load = share * self.row.C
-        return (0.0, load) if self.is_cylindrical else (load, 0.5 * load)
+        if self.is_cylindrical:
+            return 0.0 if self.row.flanges in ("NU", "N") else 0.05 * load, load
+        return load, 0.5 * load
 
     def scene(self, share: float, **changes: Any) -> trb.Scene:
         """At a load, with some oil between the rollers."""

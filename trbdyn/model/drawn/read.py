@@ -180,10 +180,10 @@ class _Reader:
         corners = [
             (face, self.surfaces.corner_facets(place, index, face))
             for face in self.surfaces.near_faces(place, index)
-            if self.surfaces.is_corner(place, index, face)
+            if self._is_of(place, index, face) and self.surfaces.is_corner(place, index, face)
         ]
         plays = {name: min(value, self.roller.reach) for name, value in self._plays(pocket).items()}
-        outward, across = np.array([self.axes[2, 2], 0.0, self.axes[2, 0]]), np.array([0.0, 1.0, 0.0])
+        outward, across = np.array([self.axes[2, 2], 0.0, 0.0]), np.array([0.0, 1.0, 0.0])
         sides = [way * plays["circumferential"] * across for way in (0.0, -1.0, 1.0)]
         sides += [way * plays["radial"] * outward for way in (-1.0, 1.0)]
         edges = edges_of(self.bearing, self.chamfer)
@@ -199,6 +199,12 @@ class _Reader:
                     "before it touches bar or wall, which is not simulated; give the roller's chamfer (m) if it is larger: half "
                     "of total less effective length is taken without it; or draw the corner with a smaller radius"
                 )
+
+    def _is_of(self, place: Place, index: int, face: DrawnFace) -> bool:
+        """Whether a face lies in the sector of a pocket, and not in that of the next one."""
+        x, y, _ = place.inside(face.centre)
+        turned = math.atan2(y, x) - 2.0 * math.pi * index / self.count
+        return abs(math.remainder(turned, 2.0 * math.pi)) < math.pi / self.count
 
     def _of_face(self, place: Place, index: int, face: Face) -> str:
         """The face of the drawing that a face of a pocket comes from, in words."""
