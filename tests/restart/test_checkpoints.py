@@ -324,7 +324,7 @@ def test_the_file_is_small_and_readable(broken: Path) -> None:
     data = checkpoint_path(broken).read_bytes()
     assert len(data) < 100_000
     name, _, head = data.split(b"\n")[:3]
-    assert name == b"trbdyn-checkpoint 3"
+    assert name == b"trbdyn-checkpoint 4"
     values = json.loads(head)
     assert values["instruction_set"] in _core.instruction_sets()
     assert values["model"] == scene().fingerprint
