@@ -9,6 +9,7 @@ from typing import Any, Final
 from trbdyn.base.display import displayed, plain
 from trbdyn.base.version import __version__
 from trbdyn.model.assembly import Assembly
+from trbdyn.model.scene import Scene
 from trbdyn.reporting.inputs import Row
 from trbdyn.reporting.tables import heads_of, safe, table_of
 from trbdyn.reporting.verdict import (
@@ -36,7 +37,7 @@ def front(
     numbers: Sequence[Mapping[str, Any]],
     sheets: Sequence[Rating | str],
     verdicts: Sequence[list[Sentence]],
-    assembly: Assembly | None = None,
+    of_all: Scene | Assembly | None = None,
 ) -> str:
     """The sheet of one bearing, or of all on a shaft; what is the same for several bearings is told once."""
     several = len(results) > 1
@@ -45,9 +46,9 @@ def front(
         "<h2>Sheet</h2>",
         f"<p>{'; '.join(f'{name} <b>{safe(text)}</b>' for name, text in _head(results))}</p>",
     ]
-    if assembly is not None:
-        rows = [("given", "shaft", assembly.title)]
-        rows += [("given", row[0], " ".join(_told(row))) for row in assembly._shown().rows]
+    if of_all is not None:
+        rows = [("given", "shaft", of_all.title)]
+        rows += [("given", row[0], " ".join(_told(row))) for row in of_all._shown().rows]
         parts.append(f"<h3>Shaft</h3>{_given(rows)}")
     told: dict[tuple[str, str], str] = {}
     for one, name, listed, values, sheet, judged in zip(results, names, inputs, numbers, sheets, verdicts, strict=True):

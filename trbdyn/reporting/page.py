@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from trbdyn.base.shown import Shown
 from trbdyn.model.assembly import Assembly
+from trbdyn.model.scene import Scene
 from trbdyn.plot.assembly import of_result
 from trbdyn.reporting import tables
 from trbdyn.reporting.captions import CAPTIONS
@@ -61,8 +62,7 @@ def page(
     heading = title or f"Report: {', '.join(bearings)} on one shaft"
     parts = [f"<h1>{safe(heading)}</h1>"]
     if len(results) == 1:
-        whole = results[0].assembly if isinstance(results[0], AssemblyResult) else None
-        parts.append(_sheet(list(results[0].by_name.values()), bearings, reliability, whole))
+        parts.append(_sheet(list(results[0].by_name.values()), bearings, reliability, results[0].subject))
     for result, name in zip(results, names, strict=True):
         parts.append(_shaft(result, name if len(results) > 1 else "", pictures, reliability))
     own = of_result(results[0])
@@ -106,14 +106,14 @@ def judgement(result: Result) -> list[Sentence]:
 
 
 def _sheet(
-    results: Sequence[Result], names: Sequence[str], reliability: float, assembly: Assembly | None = None
+    results: Sequence[Result], names: Sequence[str], reliability: float, of_all: Scene | Assembly | None = None
 ) -> str:
-    """The first page, to be signed."""
+    """The first page, to be signed; `of_all`: the bearings together, whose loads the page has too."""
     sheets = [sheet_of(result, reliability) for result in results]
     numbers = [_with_lives(result.summary(), sheet) for result, sheet in zip(results, sheets, strict=True)]
     judged = [verdict(result, values) for result, values in zip(results, numbers, strict=True)]
     listed = [rows(result.scene) for result in results]
-    return front(results, names, listed, numbers, sheets, judged, assembly)
+    return front(results, names, listed, numbers, sheets, judged, of_all)
 
 
 def _body(
