@@ -156,8 +156,8 @@ static double add(trb_multirate *s, const trb_team *team)
   double        change = 0.0;
   const double *packed = s->packed, *weight = s->weight;
   for (int k = 0; k < trb_team_size(team); k++) {
-    trb_mover   *b = trb_team_mover(s, team, k);
-    const int    n = b->course.main;
+    trb_mover *b = trb_team_mover(s, team, k);
+    const int  n = b->course.main;
     change = larger(change, sqrt(trb_weighted_product(n, packed, packed, weight) / n));
     for (int i = 0; i < n; i++) b->e[i] += packed[i];
     packed += n, weight += n;
