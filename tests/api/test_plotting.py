@@ -160,7 +160,7 @@ def test_a_map_is_the_mean_of_the_rollers_that_passed(loaded: Result, quantity: 
     """Every cell: mean over the records used and the rollers in that sector whose node carries load."""
     records, bins = 7, 23  # no roller stands on a border at the start, save at 0
     figure = plot.contact_map(loaded, quantity, records=records, bins=bins)
-    replay, factor = Replay(loaded), 1e-9 if quantity == "pressure" else 1.0
+    replay, factor = Replay(loaded), 1e-6 if quantity == "pressure" else 1.0
     index = np.linspace(0, len(loaded) - 1, records).round().astype(int)
     angle = np.mod(loaded.roller_orbit_angle[index], 2.0 * np.pi)
     found = [replay.contacts(int(k)) for k in index]

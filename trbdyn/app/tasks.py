@@ -164,8 +164,11 @@ def _run(
         callback=look,
     )
     # what was recorded is shown, whoever stops now: Stop for a second time ends this process
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    return _shown(folder, say, result, subject, wants, extra, also or Also())
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        return _shown(folder, say, result, subject, wants, extra, also or Also())
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _shown(
