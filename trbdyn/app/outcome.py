@@ -190,7 +190,7 @@ def _show_kept(page: Page, one: Kept) -> None:
     with ui.element("div").classes("trb-wide"):
         if page.bench.file(one.name, "view.html"):
             frame = ui.element("iframe").props(f'src="{address}/view.html" sandbox="allow-scripts" data-path="view"')
-            frame.classes("w-full border").style("height: 34rem")
+            frame.classes("w-full border trb-view")
         with ui.column():
             for path in sorted((folder / "pictures").rglob("*.png")):
                 ui.element("img").props["src"] = f"{address}/{path.relative_to(folder).as_posix()}"

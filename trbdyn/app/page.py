@@ -27,6 +27,8 @@ STYLE: Final = """
 .trb-upload .q-uploader__list, .trb-upload .q-uploader__subtitle { display: none; }
 .q-tab-panel { padding: 0.5rem 0; }
 img, iframe { max-width: 100%; }
+.trb-view { height: 34rem; }
+@media (max-width: 640px) { .trb-view { height: 46rem; } }
 """
 TABS: Final = {
     "start": "Start",
