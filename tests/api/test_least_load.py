@@ -10,7 +10,7 @@ import pytest
 
 import trbdyn as trb
 from trbdyn.study import least_load
-from trbdyn.study.least_load import entering, least_of, power_per_area
+from trbdyn.study.least_load import EITHER, OPEN, entering, least_of, power_per_area
 
 
 def scene(**effects: Any) -> trb.Scene:
@@ -99,3 +99,13 @@ def test_a_light_bearing_skids_and_a_loaded_one_rolls(found: Any) -> None:
 def test_refusals(arguments: dict[str, Any], words: str) -> None:
     with pytest.raises(trb.InputError, match=words):
         trb.least_load(**{"subject": scene(), "speeds": [3000.0], "loads": [(0.0, 100.0)], **arguments})
+
+
+@pytest.mark.parametrize(
+    ("rolling", "standing", "verdict"),
+    [(-1.0, 1.0, EITHER), (1.0, -1.0, OPEN), (1.0, 1.0, "slips"), (-1.0, -1.0, "rolls"), (0.0, 1.0, OPEN)],
+)
+def test_starts_on_both_sides_of_the_limit(rolling: float, standing: float, verdict: str) -> None:
+    """A slip that rises above the limit and one that falls below it come to one slip near it (30206 under 0.0015 C: 0.1032)."""
+    numbers = dict.fromkeys(least_load.NUMBERS, 0.1) | {"steady": 1.0, "turns": 8.0, "message": ""}
+    assert least_load._judged(numbers | {"side": rolling}, numbers | {"side": standing})["verdict"] == verdict

@@ -250,8 +250,9 @@ def _judged(rolling: Mapping[str, Any], standing: Mapping[str, Any]) -> dict[str
     verdict = OPEN
     if slips != rolls:
         verdict = SLIPS if slips else ROLLS
-    elif (slips and rolls) or (rolling["side"] < 0.0 < standing["side"] and rolling["steady"] and standing["steady"]):
+    elif rolling["side"] < 0.0 < standing["side"] and rolling["steady"] and standing["steady"]:
         verdict = EITHER
+    # where each has passed the limit towards the other, both come to one slip near it, whose side longer runs tell
     near = abs(high - low) <= max(AGREE[0], AGREE[1] * 0.5 * (low + high))
     found = {name: rolling[name] for name in NUMBERS} | {"slip_from_standing": high, "verdict": verdict}
     return {**found, "settled": bool(near) and not message, "turns": rolling["turns"], "message": message}
