@@ -83,7 +83,7 @@ def test_stl_gives_the_cage_of_the_step_file(drawings: ModuleType, rig: trb.Bear
         assert found.plays[play] == pytest.approx(value, abs=2e-6), play
     for name in BARS:
         np.testing.assert_allclose(found.pockets[0].face(name).normal, rig.pocket.face(name).normal, atol=1e-4)
-    with pytest.raises(trb.TrbError, match=r"no pitch is found|must be the number of pockets"):
+    with pytest.raises(trb.FileError, match="no pitch is found"):
         read_cage(as_stl(step, 24), rig, tolerance=TOLERANCE)
 
 

@@ -42,9 +42,8 @@ def edges_of(bearing: Bearing, chamfer: float) -> FloatArray:
         flat = end - (sphere - math.sqrt(sphere**2 - rim**2) if rim < sphere < math.inf else 0.0)
         centre = flat - way * chamfer
         off = middle + centre * math.tan(half_angle) - chamfer / math.cos(half_angle)
-        for at in np.linspace(
-            -half_angle, way * 0.5 * math.pi, ALONG
-        ):  # from the normal of the flank to that of the end
+        # from the normal of the flank to that of the end
+        for at in np.linspace(-half_angle, way * 0.5 * math.pi, ALONG):
             found.append((off + chamfer * math.cos(at)) * circle + [0.0, 0.0, centre + chamfer * math.sin(at)])
     return np.concatenate(found)
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from trbdyn.base.validation import number_of
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.drawn.cage import DrawnCage
 from trbdyn.model.drawn.corners import depth_in, edges_of, radius_of
@@ -40,13 +41,12 @@ def read_cage(
 ) -> DrawnCage:
     """Recognise a cage in a drawing, with arguments and errors of `Cage.from_step`."""
     size = bearing.roller.diameter
-    if not 1e-8 <= tolerance <= 0.01 * size:
-        raise InputError.of("tolerance", tolerance, f"must be from 1e-8 to {0.01 * size:g} (m)")
+    tolerance = number_of("tolerance", tolerance, "m", ge=1e-8, le=0.01 * size)
     roller = bearing.roller
     if chamfer is None:
         chamfer = 0.5 * (roller.total_length - roller.effective_length)
-    elif not 0.0 <= chamfer <= 0.25 * size:
-        raise InputError.of("chamfer", chamfer, f"must be from 0 to {0.25 * size:g}, a quarter of the diameter (m)")
+    else:
+        chamfer = number_of("chamfer", chamfer, "m", ge=0.0, le=0.25 * size)
     with opened(path, mesh_size=0.2 * size, unit=unit, usual=bearing.pitch_diameter + 0.3 * size) as drawing:
         return _Reader(drawing, bearing, tolerance, roller_plane, chamfer).read()
 
@@ -84,6 +84,12 @@ class _Reader:
         self._reach_for(REACHES[0])
         axis = axis_of(self.drawing)
         found = pockets_of(self.drawing, axis)
+        if found < self.count and self.count % found == 0:
+            raise FileError(
+                f"{self.drawing.path}: no pitch is found by which all {self.count} pockets come together: only {found} turns "
+                "of the cage do; pockets must be alike, triangles of an STL file fine enough for it, and bearing.n_rollers their "
+                "number"
+            )
         if found != self.count:
             limit = f"must be the number of pockets in {self.drawing.path}, {found}"
             raise InputError.of(("bearing", "n_rollers"), self.count, limit)
