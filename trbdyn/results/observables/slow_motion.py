@@ -327,11 +327,9 @@ class Compared:
     verdict : {"agreed", "grows", "dies", "meets", "two motions", "start decides", "unknown"}
         Agreed: all starts have come to the same motion. Grows, dies: they have not, and the start between the two others moves
         towards the larger or the smaller one, or it is there already and the other follows. Meets: a larger one moves down and a
-        smaller one up. Two motions: the
-        outer ones have settled apart, and the start between them has gone to one of them; or a smaller one moves down and a
-        larger one up. So the start decides. Start
-        decides: the rollers creep within more than `SLOW` turns, and each start keeps its own motion for a time that is told.
-        Unknown: none of these.
+        smaller one up. Two motions: the outer ones have settled apart, and the start between them has gone to one of them; or a
+        smaller one moves down and a larger one up. Start decides: the rollers creep within more than `SLOW` turns, and each
+        start keeps its own motion for a time that is told. Unknown: none of these.
     orbit : float
         Agreed: the orbit of the cage, mean of the starts. Grows, dies: that of the start towards which it moves. Meets: between
         these two. Over Cpr.
