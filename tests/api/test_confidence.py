@@ -416,6 +416,8 @@ def test_what_is_not_kept_cannot_be_asked_for() -> None:
         alone.run(duration=0.1, until={"pocket_duty": 0.1})
     with pytest.raises(trb.InputError, match="needs a cage"):
         alone.run(duration=0.1, until="cage")
+    with pytest.raises(trb.InputError, match="must be 'cage', or shares by the names of averages"):
+        trb.RunOptions(revolutions=1.0, until="torque")  # type: ignore[arg-type]
 
 
 def test_a_run_too_short_for_a_look_says_so() -> None:

@@ -263,7 +263,7 @@ def show_bearing(page: Page) -> None:
 
 def _with_part(one: Field) -> Field:
     """A field whose words name the part that it is of, for a place below no heading of that part."""
-    words = one.path.removeprefix("bearing.").removesuffix("_deg").replace(".", " ").replace("_", " ")
+    words = re.sub(r"_(?=\w\w)", " ", one.path.removeprefix("bearing.").removesuffix("_deg").replace(".", " "))
     return replace(one, words=re.sub(r"^n (?=\w)", "number of ", words))
 
 

@@ -79,6 +79,8 @@ OF_ONE_RUN: Final = ("revolutions", "duration", "until", "save_every", "save_gro
 
 def _wanted(until: Any) -> Any:
     """The name of the cage's motion alone, with the limit of an orbit."""
+    if isinstance(until, str) and until != CAGE:
+        raise ValueError(f"must be '{CAGE}', or shares by the names of averages, such as {{'torque': 0.01}}")
     return {CAGE: LIMITS[COMPARED]} if until == CAGE else until
 
 
