@@ -31,7 +31,7 @@ import platform
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -218,11 +218,6 @@ class Report:
         )
         return out
 
-    def stamped(self, page: str) -> str:
-        """A page of its own, with when and where it was measured below its title."""
-        title, _, rest = page.partition("\n")
-        return f"{title}\n\n{_stamp(self.to_dict())}\n{rest}"
-
     def finish(self) -> dict[str, Any]:
         """Write the JSON file and the part of the README that were asked for; say where everything is."""
         out = self.to_dict()
@@ -334,25 +329,3 @@ def pyplot() -> Any:
     import matplotlib.pyplot as plt
 
     return plt
-
-
-def timed(function: Callable[[], Any]) -> tuple[float, Any]:
-    """Wall time of a call (s), and what it gave."""
-    began = time.perf_counter()
-    out = function()
-    return time.perf_counter() - began, out
-
-
-def per_call(function: Callable[[], Any], *, repeats: int = 15, least: float = 0.01) -> float:
-    """Wall time of a short call (s): median over `repeats` loops, each at least `least` seconds long."""
-    count = 1
-    while (spent := _loop(function, count)) < least:
-        count = max(2 * count, int(1.2 * count * least / max(spent, 1e-9)))
-    return float(np.median([_loop(function, count) for _ in range(repeats)])) / count
-
-
-def _loop(function: Callable[[], Any], count: int) -> float:
-    began = time.perf_counter()
-    for _ in range(count):
-        function()
-    return time.perf_counter() - began

@@ -29,10 +29,7 @@ PAGES: Final = tuple(
 """Pages whose figures name their records."""
 STAMPED: Final = tuple(
     ROOT / "benchmarks" / name
-    for name in (
-        *("README.md", "closures.md"),
-        *("paper/README.md", "paper/sensitivity.md", "paper/creep_map.md", "paper/beyond.md"),
-    )
+    for name in ("README.md", "paper/README.md", "paper/sensitivity.md", "paper/creep_map.md", "paper/beyond.md")
 )
 """Pages whose tables carry a line of when they were measured. The logs of work are histories, and old by their nature."""
 MEASURED: Final = "measured"

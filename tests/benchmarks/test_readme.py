@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import json
 import re
+from argparse import Namespace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
-PAGES = ("README.md", "log.md", "closures.md")
+PAGES = ("README.md", "log.md")
 pytestmark = pytest.mark.skipif(not BENCHMARKS.is_dir(), reason="the benchmarks are not part of a source distribution")
 
 
@@ -53,7 +56,7 @@ def test_a_script_replaces_its_own_part(tmp_path: Path) -> None:
         assert after.startswith(head)
         assert after.endswith(rest.split(f"<!-- /{name} -->")[1])
         assert f"| {name} |" in after
-    common.write_readme("scaling", "the same again", path)
+    common.write_readme("cage_map", "the same again", path)
     with pytest.raises(ValueError, match="nowhere"):
         common.write_readme("nowhere", "", path)
 
@@ -63,3 +66,18 @@ def test_table_of_one_narrow_column() -> None:
 
     assert common.table([{"x": 1}], ("x",)).splitlines()[1] == "| --: |"
     assert "3000" in common.table([{"x": 3000.0}], ("x",))
+
+
+def test_report_is_plain_json(tmp_path: Path) -> None:
+    from common import SCHEMA, Report
+
+    options = Namespace(quick=True, json=tmp_path / "out.json")
+    report = Report("name", options, {"value": "1: a number"})
+    report.add(value=np.float64(np.nan))
+    with pytest.raises(KeyError, match="other"):
+        report.add(other=1)
+    report.finish()
+    found = json.loads(options.json.read_text(encoding="utf-8"))
+    assert found["schema"] == SCHEMA
+    assert found["results"] == [{"value": None}]
+    assert found["machine"]["numpy"] == np.__version__

@@ -1,5 +1,4 @@
-"""The benchmarks of accuracy and scaling run, and write what they promise; the table of estimates is whole. One slow test of
-timings."""
+"""The benchmark of accuracy runs and writes what it promises; the table of estimates is whole. One slow test of timings."""
 
 from __future__ import annotations
 
@@ -109,16 +108,6 @@ def test_short_table_has_every_scene_and_preset(work_precision: dict[str, Any]) 
     assert found == {(case, preset) for case in work_precision["summary"]["scenes"] for preset in ACCURACY}
 
 
-@pytest.mark.slow
-def test_a_users_run_is_measured_beside_its_steps(tmp_path: Path) -> None:
-    found = smoke("user_run", tmp_path, "--turns", "0.2", least="--quick")
-    assert [row["preset"] for row in found["results"]] == list(ACCURACY)
-    for row in found["results"]:
-        assert set(row) <= set(found["columns"])
-        assert min(value for name, value in row.items() if name.startswith("wall_s_")) > 0.0
-        assert min(row["memory_over_bare"], row["file_over_bare"]) > 0.0
-
-
 def test_ratios_of_a_users_run_are_those_within_a_repeat() -> None:
     """The machine was half as fast in the second and third repeat."""
     from accuracy import user
@@ -171,14 +160,6 @@ def test_makes_the_table_of_estimates(
     finally:
         monkeypatch.undo()
         module.table.cache_clear()
-
-
-@pytest.mark.slow
-def test_scaling(tmp_path: Path) -> None:
-    found = smoke("scaling", tmp_path)
-    sweeps = {row["sweep"] for row in found["results"]}
-    assert sweeps == {"rollers", "slices", "speed", "load", "threads", "memory"}
-    assert set(found["summary"]["slopes"]) >= {"rollers", "slices"}
 
 
 @pytest.fixture(scope="module")

@@ -65,7 +65,6 @@ RELEASED = {"pip install trbdyn", 'pip install "trbdyn[notebooks]"', 'pip instal
 WHEEL = re.compile(r"pip install trbdyn-([\d.]+)-cp311-abi3-(manylinux_\d+_\d+)_x86_64\.whl")
 MINUTES = {
     ".venv/bin/python benchmarks/work_precision.py",
-    ".venv/bin/python benchmarks/peers.py --quick",
     ".venv/bin/python benchmarks/validation",
     "python benchmarks/paper",
 }

@@ -1,1 +1,0 @@
-"""Energy closures over a grid of operating points."""

@@ -1,1 +1,0 @@
-"""Parts of peers.py: what is run, how alternatives are compared, the picture."""
