@@ -49,8 +49,13 @@ LOAD_HEAVY = (
     "trbdyn.results.hdf5_file",
     "trbdyn.results.result",
     "trbdyn.results.result_file",
-    "trbdyn.study.front",
-    "trbdyn.study.planning.picture",
+    "trbdyn.extras.design.front",
+    "trbdyn.extras.design.planning.picture",
+    "trbdyn.extras.heat.preload_picture",
+    "trbdyn.extras.heat.thermal_picture",
+    "trbdyn.extras.maps.cage_map_picture",
+    "trbdyn.extras.maps.slip_picture",
+    "trbdyn.extras.maps.torque_picture",
 )
 COMMANDS = ("trbdyn/cli/",)
 MODELS = ("trbdyn/model/",)

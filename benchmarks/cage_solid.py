@@ -25,9 +25,9 @@ import common
 import numpy as np
 
 import trbdyn as trb
-from trbdyn.cage.cage_solid import cage_solid, pocket_axes
+from trbdyn.extras.elastic.cage_solid import cage_solid
 from trbdyn.model.cage_body import Wall
-from trbdyn.model.pocket import every_face
+from trbdyn.model.pocket import every_face, pocket_axes
 
 STORED = Path(__file__).parent / "data" / "cage_solid.json"
 FORCE = 100.0

@@ -26,9 +26,9 @@ import common
 import numpy as np
 
 import trbdyn as trb
+from trbdyn.extras.design.planning import Plan
+from trbdyn.extras.design.planning.candidates import TRUE_NODES, numerics
 from trbdyn.results import numbers
-from trbdyn.study.planning import Plan
-from trbdyn.study.planning.candidates import TRUE_NODES, numerics
 
 COLUMNS = {
     "scene": "text: name",

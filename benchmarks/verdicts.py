@@ -21,7 +21,7 @@ import common
 import numpy as np
 
 import trbdyn as trb
-from trbdyn.study.heat_network import heat_of
+from trbdyn.extras.heat.heat_network import heat_of
 
 BEARINGS: Final = {
     "30205": 6000.0,

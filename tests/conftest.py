@@ -48,7 +48,7 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 
 def done_here(work: Callable[..., Any], tasks: Any, count: int) -> Any:
     """In place of worker processes: this one, with what they get and give through pickle."""
-    from trbdyn.study import executors
+    from trbdyn.extras.study import executors
 
     def through_pickle(task: Any, stopped: Callable[[], bool]) -> Any:
         own, given = pickle.loads(pickle.dumps((work, task)))
@@ -65,7 +65,7 @@ def pytest_collection_finish() -> None:
 
 def pytest_sessionstart() -> None:
     """Before the fixtures of modules."""
-    from trbdyn.study import executors
+    from trbdyn.extras.study import executors
 
     WORKERS.append(executors._processes)
     executors._processes = done_here
@@ -73,7 +73,7 @@ def pytest_sessionstart() -> None:
 
 def pytest_sessionfinish() -> None:
     """Another session may follow in this process."""
-    from trbdyn.study import executors
+    from trbdyn.extras.study import executors
 
     executors._processes = WORKERS.pop()
 
@@ -85,7 +85,7 @@ WORKERS: Final[list[Any]] = []
 @pytest.fixture
 def workers(monkeypatch: pytest.MonkeyPatch) -> None:
     """Studies of this test have worker processes."""
-    monkeypatch.setattr("trbdyn.study.executors._processes", WORKERS[0])
+    monkeypatch.setattr("trbdyn.extras.study.executors._processes", WORKERS[0])
 
 
 @pytest.fixture(autouse=True)

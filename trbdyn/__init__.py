@@ -18,17 +18,19 @@ from typing import TYPE_CHECKING, Any
 from trbdyn.base.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from trbdyn import errors as errors, laws as laws, plot as plot, study as study
+    from trbdyn import errors as errors, laws as laws, plot as plot
+    from trbdyn.extras import study as study
     from trbdyn.base.version import __version__ as __version__
     from trbdyn.errors import (
         FileError as FileError,
         InputError as InputError,
         LoadError as LoadError,
+        MissingExtra as MissingExtra,
         RunWarning as RunWarning,
         StepError as StepError,
         TrbError as TrbError,
     )
-    from trbdyn.fmi.export import write_fmu as write_fmu
+    from trbdyn.extras.exchange.fmu import write_fmu as write_fmu
     from trbdyn.model import cases as cases, lubricants as lubricants, pocket_shapes as pocket_shapes
     from trbdyn.model.assembly import Assembly as Assembly
     from trbdyn.model.bearing import (
@@ -47,7 +49,7 @@ if TYPE_CHECKING:
     from trbdyn.model.effects import Effects as Effects
     from trbdyn.model.elastic_cage import ElasticCage as ElasticCage
     from trbdyn.model.growth import Growth as Growth
-    from trbdyn.model.heat import HeatPaths as HeatPaths
+    from trbdyn.extras.heat.paths import HeatPaths as HeatPaths
     from trbdyn.model.land import Land as Land
     from trbdyn.model.lubricants import Lubricant as Lubricant, Oil as Oil
     from trbdyn.model.motion import History as History
@@ -64,7 +66,8 @@ if TYPE_CHECKING:
     from trbdyn.model.ring_body import Housing as Housing, RingBody as RingBody
     from trbdyn.model.scene import RotatingLoad as RotatingLoad, Scene as Scene, Start as Start
     from trbdyn.model.spectrum import LoadCase as LoadCase, Spectrum as Spectrum
-    from trbdyn.model.trace import Trace as Trace, read_trace as read_trace
+    from trbdyn.extras.cad.read_trace import read_trace as read_trace
+    from trbdyn.model.trace import Trace as Trace
     from trbdyn.plot import animation as animation
     from trbdyn.reporting import report as report
     from trbdyn.results import observables as observables
@@ -76,29 +79,29 @@ if TYPE_CHECKING:
     from trbdyn.run.options import RunOptions as RunOptions
     from trbdyn.run.rating import rating as rating
     from trbdyn.run.resume import resume as resume
-    from trbdyn.run.rexs import read_rexs as read_rexs, write_rexs as write_rexs
+    from trbdyn.extras.exchange.rexs import read_rexs as read_rexs, write_rexs as write_rexs
     from trbdyn.run.simulation import Simulation as Simulation
     from trbdyn.run.toml_assembly import load_assembly as load_assembly
     from trbdyn.run.toml_case import load_case as load_case
-    from trbdyn.run.wear import wear as wear
+    from trbdyn.extras.wear.wear import wear as wear
     from trbdyn.standards.frequencies import frequencies as frequencies
     from trbdyn.statics.assembly import equilibrium as equilibrium, stiffness as stiffness
     from trbdyn.statics.fit import fit as fit
     from trbdyn.statics.preload import preload_diagram as preload_diagram
-    from trbdyn.study.cage_answer import cage_answer as cage_answer
-    from trbdyn.study.cage_map import cage_map as cage_map
-    from trbdyn.study.least_load import least_load as least_load
-    from trbdyn.study.optimise import optimise as optimise
-    from trbdyn.study.planning import plan as plan
-    from trbdyn.study.preload_over import preload_over as preload_over
-    from trbdyn.study.preload_range import preload_range as preload_range
-    from trbdyn.study.spectrum import series_table as series_table, spectrum as spectrum
-    from trbdyn.study.surrogate import surrogate as surrogate
-    from trbdyn.study.thermal import thermal as thermal
-    from trbdyn.study.torque_map import torque_map as torque_map
-    from trbdyn.study.uncertainty import uncertainty as uncertainty
-    from trbdyn.study.what_matters import sensitivity as sensitivity
-    from trbdyn.study.whirl import whirl_onset as whirl_onset
+    from trbdyn.extras.maps.cage_answer import cage_answer as cage_answer
+    from trbdyn.extras.maps.cage_map import cage_map as cage_map
+    from trbdyn.extras.maps.least_load import least_load as least_load
+    from trbdyn.extras.design.optimise import optimise as optimise
+    from trbdyn.extras.design.planning import plan as plan
+    from trbdyn.extras.heat.preload_over import preload_over as preload_over
+    from trbdyn.extras.heat.preload_range import preload_range as preload_range
+    from trbdyn.extras.study.spectrum import series_table as series_table, spectrum as spectrum
+    from trbdyn.extras.design.surrogate import surrogate as surrogate
+    from trbdyn.extras.heat.thermal import thermal as thermal
+    from trbdyn.extras.maps.torque_map import torque_map as torque_map
+    from trbdyn.extras.study.uncertainty import uncertainty as uncertainty
+    from trbdyn.extras.design.what_matters import sensitivity as sensitivity
+    from trbdyn.extras.maps.whirl import whirl_onset as whirl_onset
     from trbdyn.viewer import view as view
 
 __all__, _found, __dir__ = lazy_names(__name__, __file__)

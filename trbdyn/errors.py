@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from pydantic import ValidationError
     from pydantic.fields import FieldInfo
 
-__all__ = ["FileError", "InputError", "LoadError", "Problem", "RunWarning", "StepError", "TrbError"]
+__all__ = ["FileError", "InputError", "LoadError", "MissingExtra", "Problem", "RunWarning", "StepError", "TrbError"]
 
 
 def __dir__() -> list[str]:
@@ -133,6 +133,10 @@ class LoadError(TrbError):
 
 class FileError(TrbError, OSError):
     """A file that cannot be read or written as asked."""
+
+
+class MissingExtra(TrbError, ImportError):
+    """A part of trbdyn was called that is not installed, or whose packages are not."""
 
 
 class RunWarning(UserWarning):

@@ -18,7 +18,7 @@ from typing import Any, Final
 
 import trbdyn as trb
 from trbdyn import Simulation, _core
-from trbdyn.cage.simulated import mode_rows
+from trbdyn.extras.elastic.simulated import mode_rows
 from trbdyn.model.defect_rows import form_rows
 from trbdyn.model.flatten import diameter_deviation, face_rows, parameter_block
 from trbdyn.model.profiles import drop_rows

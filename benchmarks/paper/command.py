@@ -24,10 +24,10 @@ from trbdyn import __version__, plot
 from trbdyn.base.own_files import folder_path
 from trbdyn.cli.outcome import DONE, FAILED, Parser, let_any_name_be_printed, run_command
 from trbdyn.errors import FileError, InputError
+from trbdyn.extras.study.executors import execute
+from trbdyn.extras.study.work import said
 from trbdyn.model.motion import MAX_TIME
 from trbdyn.results.summary import clean, write_json
-from trbdyn.study.executors import execute
-from trbdyn.study.work import said
 
 SCHEMA: Final = "trbdyn-paper-2"
 SHORT: Final = (

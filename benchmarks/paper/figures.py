@@ -18,13 +18,13 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
+from paper.movable import Movable, Pockets
 from paper.point_numbers import Run, Runs
 from paper.points import FIGURES, Condition, Point, StartKind
 from trbdyn import plot
 from trbdyn.plot.style import COLOURS, GREY, LIGHT, LINES, STYLE, line
 from trbdyn.results import observables
 from trbdyn.results.observables import whirl_amplitude
-from trbdyn.run.movable import Movable, Pockets
 
 Array = NDArray[np.float64]
 

@@ -21,8 +21,8 @@ from paper.files import History, is_finished, read_history, write_point, write_p
 from paper.growth import growth_of_history
 from paper.points import Point
 from trbdyn.errors import StepError, TrbError
+from trbdyn.extras.study.work import Report, said
 from trbdyn.results import observables
-from trbdyn.study.work import Report, said
 
 if TYPE_CHECKING:
     from trbdyn.run.simulation import Simulation

@@ -27,8 +27,8 @@ from collections.abc import Callable
 from typing import Any, Final
 
 import trbdyn as trb
+from trbdyn.extras.study import Band, open_inputs
 from trbdyn.model.lubricants import REPLENISHMENT
-from trbdyn.study import Band, open_inputs
 from validation.measured import Measurement
 
 SAMPLES, SEED = 32, 0

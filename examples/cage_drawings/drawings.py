@@ -20,9 +20,9 @@ from typing import Any
 import numpy as np
 
 import trbdyn as trb
-from trbdyn.cage.cage_solid import pocket_axes
+from trbdyn.extras.cad.opened import gmsh_model
 from trbdyn.model.cage_body import Wall
-from trbdyn.model.drawn.opened import gmsh_model
+from trbdyn.model.pocket import pocket_axes
 
 MM = 1e3
 """Drawings are in mm."""

@@ -22,9 +22,10 @@ import gmsh
 import numpy as np
 
 import trbdyn as trb
-from trbdyn.cage.cage_solid import cage_solid, pocket_axes
-from trbdyn.cage.modes import CageModes
+from trbdyn.extras.elastic.cage_solid import cage_solid
+from trbdyn.extras.elastic.modes import CageModes
 from trbdyn.model.cage_body import Wall, cage_mass
+from trbdyn.model.pocket import pocket_axes
 
 RIGID = 6
 NEAR_FACE = 1e-4

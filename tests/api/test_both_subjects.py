@@ -14,13 +14,14 @@ import pytest
 import trbdyn as trb
 from trbdyn.cli import main
 from trbdyn.errors import InputError, StepError
+from trbdyn.extras.design.planning import candidates, ground, looking
+from trbdyn.extras.heat import thermal
+from trbdyn.extras.maps import torque_map, whirl
+from trbdyn.extras.study.definition import Base
 from trbdyn.model.lubricants import REPLENISHMENT
 from trbdyn.run import memory, running
 from trbdyn.run.case_text import case_text
 from trbdyn.run.checkpoint import checkpoint_path
-from trbdyn.study import thermal, torque_map, whirl
-from trbdyn.study.definition import Base
-from trbdyn.study.planning import candidates, ground, looking
 
 SCENE = trb.cases.scene_30310(3000.0, 4930.0)
 PAIR = trb.load_assembly("pair_30310")

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 import trbdyn as trb
+from trbdyn.extras.maps.cage_answer import CageAnswer, OfRollers
 from trbdyn.results.observables import Compared
-from trbdyn.study.cage_answer import CageAnswer, OfRollers
 
 SCENE = trb.cases.scene_30310(3000.0, 4930.0)
 

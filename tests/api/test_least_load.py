@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn.study import least_load
-from trbdyn.study.least_load import EITHER, OPEN, entering, least_of, power_per_area
+from trbdyn.extras.maps import least_load
+from trbdyn.extras.maps.least_load import EITHER, OPEN, entering, least_of, power_per_area
 
 
 def scene(**effects: Any) -> trb.Scene:

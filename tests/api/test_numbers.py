@@ -12,12 +12,12 @@ import pytest
 
 import trbdyn as trb
 from trbdyn.cli.sweep import table
+from trbdyn.extras.design.planning.averaged import Records, check_names, least_size
+from trbdyn.extras.study.gather import listed_in
 from trbdyn.model.assembly import Subject
 from trbdyn.results import numbers, summary
 from trbdyn.results.number import Number, Place
 from trbdyn.run.until import check_average
-from trbdyn.study.gather import listed_in
-from trbdyn.study.planning.averaged import Records, check_names, least_size
 
 NAME = "angle_of_cage"
 TURNS = 0.3

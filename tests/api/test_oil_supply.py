@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
+from trbdyn.extras.study.uncertainty import open_inputs
 from trbdyn.model.lubricants import OIL_SUPPLIES, supply_of
-from trbdyn.study.uncertainty import open_inputs
 
 
 @pytest.mark.parametrize("name", OIL_SUPPLIES)

@@ -11,8 +11,8 @@ import xarray
 
 import trbdyn as trb
 from trbdyn.errors import InputError
-from trbdyn.study.guide import Aims, Fits, next_designs
-from trbdyn.study.uncertainty import unit_draws
+from trbdyn.extras.design.guide import Aims, Fits, next_designs
+from trbdyn.extras.study.uncertainty import unit_draws
 
 SCENE = trb.cases.scene_32216(2000.0)
 SCENE = SCENE.replace(bearing=SCENE.bearing.replace({"roller.profile": trb.Profile.crowned(20.0)}))
@@ -126,7 +126,7 @@ def whirls_later(study: Any, **_: Any) -> xarray.Dataset:
 
 
 def test_only_designs_that_longer_runs_confirm_are_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("trbdyn.study.optimise.run_study", whirls_later)
+    monkeypatch.setattr("trbdyn.extras.design.optimise.run_study", whirls_later)
     change = {RADIUS: (5.0, 100.0)}
     short = trb.optimise(SCENE, change, TORQUE, designs=24, confirm=1.0)
     assert short.chosen.inputs[RADIUS] > 90.0
@@ -147,7 +147,7 @@ def test_a_longer_run_that_fails_refuses_the_design(monkeypatch: pytest.MonkeyPa
         data["message"] = data["message"].where(data["torque"] < 3.0, "the cage is torn")
         return data
 
-    monkeypatch.setattr("trbdyn.study.optimise.run_study", fails_later)
+    monkeypatch.setattr("trbdyn.extras.design.optimise.run_study", fails_later)
     found = trb.optimise(SCENE, {RADIUS: (5.0, 100.0)}, TORQUE, designs=24)
     assert 40.0 < found.chosen.inputs[RADIUS] <= 60.0
     assert set(found.refused) == {"the cage is torn"}

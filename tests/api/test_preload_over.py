@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn.model.heat import PARTS
-from trbdyn.study import preload_over as module
-from trbdyn.study.heat_network import film_temperature, network
+from trbdyn.extras.heat import preload_over as module
+from trbdyn.extras.heat.heat_network import film_temperature, network
+from trbdyn.extras.heat.paths import PARTS
 
 SEAT: dict[str, Any] = {"bore": 0.050, "outside": 0.110, "width": 0.02925, "shaft": "m6", "housing": "P7"}
 ALUMINIUM = trb.Mounting(**SEAT, housing_material=trb.Material.aluminium())

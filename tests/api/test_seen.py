@@ -35,13 +35,13 @@ from numpy.typing import NDArray
 
 import trbdyn as trb
 from trbdyn import plot
+from trbdyn.extras.design.front import draw_front
+from trbdyn.extras.design.optimise import Design, Optimum
+from trbdyn.extras.heat.thermal_picture import draw_balance
+from trbdyn.extras.maps.cage_map_picture import draw_map as draw_cage_map
+from trbdyn.extras.maps.torque_picture import draw_map
 from trbdyn.plot.animation import animate
-from trbdyn.plot.cage_map import draw_map as draw_cage_map
-from trbdyn.plot.heat import draw_balance
-from trbdyn.plot.torque import draw_map
 from trbdyn.results.result import Result
-from trbdyn.study.front import draw_front
-from trbdyn.study.optimise import Design, Optimum
 
 KEPT = Path(__file__).with_name("pictures.json")
 NUMBER = re.compile(r"-?\d+\.?\d*(?:e[+-]?\d+)?|nan")

@@ -11,8 +11,8 @@ import pytest
 
 import trbdyn as trb
 from trbdyn.base.shown import Displayed, Shown
+from trbdyn.extras.design.what_matters import Influence, Sensitivity
 from trbdyn.results.numbers import TABLE
-from trbdyn.study.what_matters import Influence, Sensitivity
 
 
 class Cells(HTMLParser):

@@ -22,10 +22,10 @@ from trbdyn import study
 from trbdyn.base.shipped import CASES
 from trbdyn.cli import main
 from trbdyn.errors import FileError, InputError, StepError, TrbError
-from trbdyn.study import executors, runner, work
-from trbdyn.study.definition import Base, put, split_path
-from trbdyn.study.gather import unit_of
-from trbdyn.study.index import INDEX, Entry, Index, read_lines
+from trbdyn.extras.study import executors, runner, work
+from trbdyn.extras.study.definition import Base, put, split_path
+from trbdyn.extras.study.gather import unit_of
+from trbdyn.extras.study.index import INDEX, Entry, Index, read_lines
 
 OPTIONS = study.RunOptions(duration=1e-3, save_every=5e-5, save_groups=("cage", "torque", "power"))
 FAST = {"effects.n_slices": 4}

@@ -12,8 +12,8 @@ import xarray
 import trbdyn as trb
 from trbdyn.cli import main
 from trbdyn.errors import InputError
-from trbdyn.study.surrogate import Surrogate, surrogate
-from trbdyn.study.uncertainty import Band, Spread, Uncertainty, unit_draws
+from trbdyn.extras.design.surrogate import Surrogate, surrogate
+from trbdyn.extras.study.uncertainty import Band, Spread, Uncertainty, unit_draws
 
 
 def made_of(values: Any, unit: Any, bands: tuple[Band, ...]) -> Uncertainty:

@@ -12,11 +12,11 @@ import pytest
 
 import trbdyn as trb
 from trbdyn.cli import main
-from trbdyn.model.heat import PARTS
+from trbdyn.extras.heat import thermal
+from trbdyn.extras.heat.heat_network import LossCurves, film_temperature, heat_of, network, rise
+from trbdyn.extras.heat.paths import PARTS
+from trbdyn.extras.heat.thermal import Thermal
 from trbdyn.results.result import Result
-from trbdyn.study import thermal
-from trbdyn.study.heat_network import LossCurves, film_temperature, heat_of, network, rise
-from trbdyn.study.thermal import Thermal
 
 REFERENCE: dict[str, Any] = {"bore": 0.050, "outside": 0.110, "width": 0.02925}
 

@@ -11,9 +11,9 @@ import pytest
 
 import trbdyn as trb
 from trbdyn.cli import main
-from trbdyn.study import torque_map as module
-from trbdyn.study.settled import drift
-from trbdyn.study.torque_map import SOURCES, TorqueMap, torque_map
+from trbdyn.extras.maps import torque_map as module
+from trbdyn.extras.maps.torque_map import SOURCES, TorqueMap, torque_map
+from trbdyn.extras.study.settled import drift
 
 
 @pytest.fixture(scope="module")

@@ -10,8 +10,8 @@ import pytest
 from scipy.stats import qmc, sobol_indices, uniform
 
 import trbdyn as trb
-from trbdyn.study.definition import Base, Case
-from trbdyn.study.uncertainty import (
+from trbdyn.extras.study.definition import Base, Case
+from trbdyn.extras.study.uncertainty import (
     Band,
     band_of,
     drawn_case,

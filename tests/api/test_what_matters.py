@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
+from trbdyn.extras.design.what_matters import REPEATS, STARTS, _moved, told_from
 from trbdyn.model.bearing import Bearing
-from trbdyn.study.what_matters import REPEATS, STARTS, _moved, told_from
 
 
 def table(seed: int, effect: float, chaos: float) -> int:

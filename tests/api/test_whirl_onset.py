@@ -12,8 +12,8 @@ import xarray
 
 import trbdyn as trb
 from trbdyn import InputError
-from trbdyn.study import whirl
-from trbdyn.study.whirl import CageRuns, WhirlOnset, whirl_onset
+from trbdyn.extras.maps import whirl
+from trbdyn.extras.maps.whirl import CageRuns, WhirlOnset, whirl_onset
 
 SCENE = trb.cases.scene_30310(2000.0, 3080.0)
 

@@ -21,16 +21,16 @@ import pytest
 
 import trbdyn
 import trbdyn as trb
-from trbdyn.cage.modes import CageModes
 from trbdyn.cli import main, make_parser
+from trbdyn.extras.elastic.modes import CageModes
+from trbdyn.extras.study import gather
+from trbdyn.extras.study.answer import Answer
 from trbdyn.model.cases import paper_30310
 from trbdyn.plot import animation
 from trbdyn.reporting import save_pdf
 from trbdyn.results import forces, summary
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.export import export
-from trbdyn.study import gather
-from trbdyn.study.answer import Answer
 from trbdyn.viewer import View, save_gltf
 
 FOREIGN = b"days of work of somebody else\n"
@@ -79,7 +79,7 @@ def moving(run: trb.Result) -> Any:
     return animation.animate(run, last=1.0, frames=2)
 
 
-STUDY = "trbdyn.study."
+STUDY = "trbdyn.extras.study."
 WRITERS: dict[str, tuple[str, Callable[..., Any]]] = {
     "trbdyn.reporting.report": ("a.html", lambda run, path, **how: trb.report(run, path, pictures=[], **how)),
     "trbdyn.viewer.view": ("a.html", lambda run, path, **how: trb.view(run, path, max_frames=3, **how)),
@@ -94,7 +94,7 @@ WRITERS: dict[str, tuple[str, Callable[..., Any]]] = {
         "a.json",
         lambda run, path, **how: summary.write_json(summary.clean(dict(run.summary())), path, **how),
     ),
-    "trbdyn.cage.modes.CageModes.save": (
+    "trbdyn.extras.elastic.modes.CageModes.save": (
         "a.h5",
         lambda run, path, **how: cage_modes().save(path, **how),
     ),
@@ -109,7 +109,7 @@ WRITERS: dict[str, tuple[str, Callable[..., Any]]] = {
         "a.csv",
         lambda run, path, **how: AssemblyResult.export(Named({"left": run}), path, **how),  # type: ignore[arg-type]
     ),
-    "trbdyn.study.gather.save": ("a.nc", lambda run, path, **how: gather.save(dataset(), path, **how)),
+    "trbdyn.extras.study.gather.save": ("a.nc", lambda run, path, **how: gather.save(dataset(), path, **how)),
     "trbdyn.run.simulation.Simulation.run": (
         "a.h5",
         lambda run, path, **how: trb.Simulation(paper_30310()).run(output=path, **SPAN, **how),
@@ -118,7 +118,11 @@ WRITERS: dict[str, tuple[str, Callable[..., Any]]] = {
 }
 RUNS = {name for name in WRITERS if name.endswith("Simulation.run")}
 """Runs have tests of their own for a full disk: tests/restart and tests/api/test_results.py."""
-NEEDS_A_PROGRAM = {"trbdyn.reporting.save_pdf", "trbdyn.fmi.export.write_fmu", "trbdyn.run.rexs.write_rexs"}
+NEEDS_A_PROGRAM = {
+    "trbdyn.reporting.save_pdf",
+    "trbdyn.extras.exchange.fmu.write_fmu",
+    "trbdyn.extras.exchange.rexs.write_rexs",
+}
 """Or a file of their own to begin with: tests/physics/test_fmu.py, tests/api/test_rexs.py."""
 FOLDERS = {
     f"{STUDY}{name}"
@@ -135,28 +139,28 @@ FOLDERS = {
 }
 """These own a folder, in which every file has the fingerprint of its case in its name."""
 READERS = {
-    "trbdyn.run.rexs.read_rexs",
-    "trbdyn.cage.modes.CageModes.load",
+    "trbdyn.extras.exchange.rexs.read_rexs",
+    "trbdyn.extras.elastic.modes.CageModes.load",
     "trbdyn.results.assembly.load",
     "trbdyn.results.file_source.assembly_in",
     "trbdyn.results.file_source.names_in",
     "trbdyn.model.cage.Cage.from_step",
-    "trbdyn.model.drawn.opened.opened",
-    "trbdyn.model.drawn.read.read_cage",
+    "trbdyn.extras.cad.opened.opened",
+    "trbdyn.extras.cad.read.read_cage",
     "trbdyn.model.roller.Profile.from_csv",
     "trbdyn.results.result.load_bearing",
-    "trbdyn.model.drawn.trace_file.points_of",
+    "trbdyn.extras.cad.trace_file.points_of",
     "trbdyn.model.roller.Profile.from_trace",
-    "trbdyn.model.trace.read_trace",
+    "trbdyn.extras.cad.read_trace.read_trace",
     "trbdyn.results.file_source.FileSource",
     "trbdyn.results.file_source.open_to_read",
     "trbdyn.run.resume.resume",
     "trbdyn.run.toml_assembly.load_assembly",
     "trbdyn.run.toml_case.load_case",
-    "trbdyn.study.definition.read_toml",
-    "trbdyn.study.gather.load",
-    "trbdyn.study.runner.collect",
-    "trbdyn.study.study_file.load_study",
+    "trbdyn.extras.study.definition.read_toml",
+    "trbdyn.extras.study.gather.load",
+    "trbdyn.extras.study.runner.collect",
+    "trbdyn.extras.study.study_file.load_study",
 }
 MECHANISM = ("trbdyn.base.", "trbdyn.run.checkpoint.", "trbdyn.results.hdf5_file.")
 TAKES_A_PATH = ("PathLike", "str | Path", "FilePath")
@@ -219,13 +223,13 @@ MAY_WRITE = {
     "results/hdf5_file.py": "fills a draft",
     "results/result_file.py": "has the system put its draft on the disk",
     "results/export.py": "fills memory",
-    "cage/modes.py": "fills memory",
+    "extras/elastic/modes.py": "fills memory",
     "run/checkpoint.py": "moves its own checkpoints",
-    "study/gather.py": "fills memory",
-    "study/index.py": "adds lines to the index of its folder",
+    "extras/study/gather.py": "fills memory",
+    "extras/study/index.py": "adds lines to the index of its folder",
     "plot/style.py": "fills memory",
     "reporting/page.py": "fills memory",
-    "fmi/export.py": "fills a folder of its own, which is then gone",
+    "extras/exchange/fmu.py": "fills a folder of its own, which is then gone",
 }
 
 

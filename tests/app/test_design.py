@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 
-from trbdyn.app.design import Design, all_fields, built
-from trbdyn.app.load_cases import cases_of, checked
-from trbdyn.app.outcome import case_of
-from trbdyn.app.program import script
-from trbdyn.app.units import read
+from trbdyn.extras.app.design import Design, all_fields, built
+from trbdyn.extras.app.load_cases import cases_of, checked
+from trbdyn.extras.app.outcome import case_of
+from trbdyn.extras.app.program import script
+from trbdyn.extras.app.units import read
 from trbdyn.run.toml_assembly import subject_from_dict
 
 PAGE = {

@@ -16,7 +16,7 @@ from tornado.httpclient import HTTPClientError, HTTPRequest
 from tornado.ioloop import IOLoop
 from tornado.websocket import websocket_connect
 
-from trbdyn.app.jobs import Bench
+from trbdyn.extras.app.jobs import Bench
 
 SOCKET = "/_nicegui_ws/socket.io/?EIO=4&transport=websocket"
 

@@ -10,14 +10,14 @@ from typing import Any
 import pytest
 
 import trbdyn as trb
-from trbdyn.app.design import Design, built
-from trbdyn.app.forms import open_case
-from trbdyn.app.jobs import Bench
-from trbdyn.app.outcome import case_of
-from trbdyn.app.program import script
-from trbdyn.app.tasks import TASKS
 from trbdyn.cli import main
 from trbdyn.errors import InputError
+from trbdyn.extras.app.design import Design, built
+from trbdyn.extras.app.forms import open_case
+from trbdyn.extras.app.jobs import Bench
+from trbdyn.extras.app.outcome import case_of
+from trbdyn.extras.app.program import script
+from trbdyn.extras.app.tasks import TASKS
 from trbdyn.reporting import converter
 
 SHORT = {"scene.speed_rpm": "3000", "scene.axial_load": "4930", "run.revolutions": "0.5", "run.accuracy": "fast"}
@@ -145,7 +145,7 @@ def test_a_plan_can_be_stopped(tmp_path: Path) -> None:
 
 
 def test_a_missing_extra_is_named(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    monkeypatch.setattr("trbdyn.app.find_spec", lambda name: None)
+    monkeypatch.setattr("trbdyn.extras.app.find_spec", lambda name: None)
     assert main(["app", "--no-browser"]) == 1
     assert "pip install 'trbdyn[app]'" in capsys.readouterr().err
 

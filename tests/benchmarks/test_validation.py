@@ -133,7 +133,7 @@ def test_users_and_validation_have_one_list_of_open_inputs() -> None:
     from validation.assumptions import DEFAULT, OPTIONS, bands_of, own_bands, scene_of
     from validation.measured import MEASUREMENTS
 
-    from trbdyn.study import open_inputs
+    from trbdyn.extras.study import open_inputs
 
     for point in MEASUREMENTS:
         scene = scene_of(point, OPTIONS[DEFAULT])

@@ -29,7 +29,7 @@ EXAMPLES = (
     "trbdyn.run.rating",
     "trbdyn.model.bearing",
     "trbdyn.model.catalogued",
-    "trbdyn.study.what_matters",
+    "trbdyn.extras.design.what_matters",
     "trbdyn.viewer",
     "trbdyn.viewer.gltf",
     "trbdyn.reporting",

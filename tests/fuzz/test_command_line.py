@@ -85,7 +85,7 @@ def prepared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """A folder with all kinds of files, where every run ends at its first look at the callback."""
     import os
 
-    from trbdyn.study import runner
+    from trbdyn.extras.study import runner
 
     folder = tmp_path_factory.mktemp("command line")
     patch = pytest.MonkeyPatch()

@@ -15,10 +15,10 @@ import pytest
 import trbdyn as trb
 from trbdyn import study
 from trbdyn.errors import FileError
+from trbdyn.extras.study import gather
 from trbdyn.model.cases import scene_30310
 from trbdyn.run import checkpoint
 from trbdyn.run.options import RunOptions
-from trbdyn.study import gather
 
 Reader = Callable[[Path], dict[str, Any]]
 

@@ -23,11 +23,11 @@ from shared import environment
 import trbdyn as trb
 from trbdyn import plot, study
 from trbdyn.errors import FileError, InputError
+from trbdyn.extras.study.index import Index, read_lines
+from trbdyn.extras.study.index import _checksum as checksum
 from trbdyn.model.cases import paper_30310
 from trbdyn.run.options import RunOptions
 from trbdyn.run.toml_case import case_from_dict, load_case
-from trbdyn.study.index import Index, read_lines
-from trbdyn.study.index import _checksum as checksum
 
 HUGE = 10**400
 CSRC = Path(__file__).parents[2] / "csrc"

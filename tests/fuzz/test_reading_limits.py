@@ -22,10 +22,10 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn.cage.modes import CageModes
 from trbdyn.errors import TrbError
+from trbdyn.extras.elastic.modes import CageModes
+from trbdyn.extras.study.definition import Base
 from trbdyn.run.toml_case import read_tables
-from trbdyn.study.definition import Base
 
 MEMORY, SECONDS = 200 << 20, 5.0
 MB = 1_000_000
@@ -272,7 +272,7 @@ def readers(folder: Path, small_result: bytes) -> dict[str, tuple[Path, Callable
 
 
 def CageModes_bomb(file: h5py.File) -> None:
-    from trbdyn.cage.modes import FORMAT, UNITS, VERSION
+    from trbdyn.extras.elastic.modes import FORMAT, UNITS, VERSION
 
     file.attrs.update({"format": FORMAT, "version": VERSION, "source": ""})
     for name in UNITS:

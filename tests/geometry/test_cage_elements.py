@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn.cage.cage_solid import cage_solid
-from trbdyn.cage.solid import Elasticity, Solid, told_apart
-from trbdyn.cage.wall_mesh import CORNERS, wall_mesh
+from trbdyn.extras.elastic.cage_solid import cage_solid
+from trbdyn.extras.elastic.solid import Elasticity, Solid, told_apart
+from trbdyn.extras.elastic.wall_mesh import CORNERS, wall_mesh
 from trbdyn.model.cage_body import Wall, cage_mass
 
 STEEL = Elasticity(206e9, 0.3, 7810.0)

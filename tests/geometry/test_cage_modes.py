@@ -13,11 +13,12 @@ import pytest
 from threadpoolctl import threadpool_limits
 
 import trbdyn as trb
-from trbdyn.cage.cage_solid import CageSolid, cage_solid, pocket_axes
-from trbdyn.cage.modes import CageModes
-from trbdyn.cage.sections import forces_on, rim_sections
-from trbdyn.cage.wall_mesh import wall_mesh
+from trbdyn.extras.elastic.cage_solid import CageSolid, cage_solid
+from trbdyn.extras.elastic.modes import CageModes
+from trbdyn.extras.elastic.sections import forces_on, rim_sections
+from trbdyn.extras.elastic.wall_mesh import wall_mesh
 from trbdyn.model.cage_body import Wall, cage_mass
+from trbdyn.model.pocket import pocket_axes
 
 BODY = trb.cases.cage_body_30310()
 BEARING = trb.cases.rig_30310().replace(cage=trb.Cage(play_radial=0.25e-3, play_circumferential=0.12e-3, body=BODY))
@@ -53,7 +54,7 @@ def test_bits_do_not_depend_on_the_threads_of_the_machine(built: CageSolid) -> N
 
 FORK = """
 import os, sys, threading, time
-from trbdyn.cage.solid import _one_thread
+from trbdyn.extras.elastic.solid import _one_thread
 
 def other():
     with _one_thread():

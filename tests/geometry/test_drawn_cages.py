@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn.model.drawn.corners import depth_in, edges_of, is_corner, radius_of
-from trbdyn.model.drawn.facets import Facet
-from trbdyn.model.drawn.opened import gmsh_model, library
-from trbdyn.model.drawn.read import read_cage
+from trbdyn.extras.cad.corners import depth_in, edges_of, is_corner, radius_of
+from trbdyn.extras.cad.facets import Facet
+from trbdyn.extras.cad.opened import gmsh_model, library
+from trbdyn.extras.cad.read import read_cage
 
 try:
     library()

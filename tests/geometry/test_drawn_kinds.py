@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn.model.drawn.opened import gmsh_model, library
-from trbdyn.model.drawn.read import DrawnCage, read_cage
+from trbdyn.extras.cad.opened import gmsh_model, library
+from trbdyn.extras.cad.read import DrawnCage, read_cage
 
 try:
     library()

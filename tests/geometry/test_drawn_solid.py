@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn.cage.drawn_solid import drawn_solid, straightened, stress_rows, stress_tensors
-from trbdyn.cage.solid import EDGES, Elasticity, Solid
-from trbdyn.model.drawn.opened import library
-from trbdyn.study.definition import Base
+from trbdyn.extras.cad.opened import library
+from trbdyn.extras.elastic.drawn_solid import drawn_solid, straightened, stress_rows, stress_tensors
+from trbdyn.extras.elastic.solid import EDGES, Elasticity, Solid
+from trbdyn.extras.study.definition import Base
 
 try:
     library()

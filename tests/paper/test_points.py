@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from paper import command, files, point_numbers, settle
 from paper.command import main
+from paper.movable import Pockets
 from paper.point_numbers import Run, Runs
 from paper.points import FIGURES, Condition, Inputs, Point, conditions, points
 from paper.settle import Plan, PointTask, Verdict, is_done, judge, run_point
@@ -23,7 +24,6 @@ from paper.statements import STATEMENTS, Judged, by_inputs, judge_all, judge_sta
 
 import trbdyn as trb
 from trbdyn.errors import InputError
-from trbdyn.run.movable import Pockets
 
 POINT = Point(Condition(3000.0, 4930.0), "whirl")
 PLAN = Plan(0.02, 0.01, 0.03, 0.03, 0.03, 0.03, 1e-3, 2e-4, "fast")

@@ -16,11 +16,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from paper.movable import Pockets
 from paper.point_numbers import read_run
 from paper.points import SCATTER, Condition, Point, StartKind
 from paper.settle import Plan, PointTask, run_point
-
-from trbdyn.run.movable import Pockets
 
 pytestmark = pytest.mark.slow
 

@@ -11,13 +11,13 @@ import pytest
 import scipy
 
 import trbdyn as trb
+from trbdyn.extras.design.edge_search import edge_numbers
 from trbdyn.half_space.contact import press
 from trbdyn.half_space.influence import Influence, guilbault_factor
 from trbdyn.half_space.line import Line, Pressures, press_line
 from trbdyn.half_space.stress import largest_shear, rectangle
 from trbdyn.model.spectrum import LoadCase, Spectrum
 from trbdyn.run.contact_pressure import edge_warnings
-from trbdyn.study.edge_search import edge_numbers
 
 E, NU = 206e9, 0.3
 COMPLIANCE = (1.0 - NU**2) / E

@@ -12,10 +12,12 @@ from numpy.typing import NDArray
 
 import trbdyn as trb
 from trbdyn import Effects, InputError, Scene, Simulation
-from trbdyn.cage.cage_solid import CageSolid, cage_solid, pocket_axes
-from trbdyn.cage.modes import CageModes
-from trbdyn.cage.simulated import _modes, cage_modes
-from trbdyn.cage.stress import CageStress, cage_stress
+from trbdyn.extras.elastic.cage_solid import CageSolid, cage_solid
+from trbdyn.extras.elastic.modes import CageModes
+from trbdyn.extras.elastic.simulated import _modes, cage_modes
+from trbdyn.extras.elastic.stress import cage_stress
+from trbdyn.model.pocket import pocket_axes
+from trbdyn.results.cage_stress import CageStress
 
 Array = NDArray[np.float64]
 BEARING = trb.cases.rig_30310().replace({"cage.body": trb.cases.cage_body_30310()})

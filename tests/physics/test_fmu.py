@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn.fmi.unit import BearingUnit
+from trbdyn.extras.exchange.fmu_unit import BearingUnit
 
 PLACES = ("ring_position_x", "ring_position_y", "ring_position_z", "ring_tilt_x", "ring_tilt_y")
 RATES = ("ring_velocity_x", "ring_velocity_y", "ring_velocity_z", "ring_tilt_rate_x", "ring_tilt_rate_y")
@@ -66,7 +66,7 @@ def directly(unit: BearingUnit) -> Callable[..., Any]:
 def test_fmpy_finds_nothing_wrong_and_its_steps_are_ours(tmp_path: Path) -> None:
     validation = pytest.importorskip("fmpy.validation")
     pytest.importorskip("pythonfmu3")
-    from trbdyn.fmi.export import write_fmu
+    from trbdyn.extras.exchange.fmu import write_fmu
 
     scene = trb.cases.scene_30310(1000.0, 5e3)
     path = write_fmu(scene, tmp_path / "bearing.fmu")
@@ -176,7 +176,7 @@ def test_a_rotor_of_two_units_moves_as_an_assembly(by: str, tmp_path: Path) -> N
     scenes, arm = [one.scene for one in assembly.bearings], -assembly.bearings[0].seat.mass_offset
     if by == "fmpy":
         pytest.importorskip("pythonfmu3")
-        from trbdyn.fmi.export import write_fmu
+        from trbdyn.extras.exchange.fmu import write_fmu
 
         paths = [write_fmu(one, tmp_path / f"bearing_{k}.fmu", accuracy="reference") for k, one in enumerate(scenes)]
         with running(paths[0], tmp_path / "0") as first, running(paths[1], tmp_path / "1") as second:

@@ -14,8 +14,8 @@ from shared import Cut, cut_after
 
 import trbdyn as trb
 from trbdyn import Assembly, Effects, History, Housing, InputError, RingBody, Scene, Shaft, ShaftLoad, Simulation, Start
+from trbdyn.extras.design.planning.probes import carried_over
 from trbdyn.run.replay import Replay
-from trbdyn.study.planning.probes import carried_over
 
 Array = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ import itertools
 import numpy as np
 import pytest
 
-from trbdyn.study.planning.choice import LEAST_ROOM, Choice, Option, Task, choose
+from trbdyn.extras.design.planning.choice import LEAST_ROOM, Choice, Option, Task, choose
 
 NONE = np.zeros(1)
 PLAIN = Option("plain", NONE, 1.0)

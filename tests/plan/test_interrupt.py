@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 import trbdyn as trb
+from trbdyn.extras.design.planning import probes
 from trbdyn.model.cases import scene_30310
-from trbdyn.study.planning import probes
 
 
 def test_ctrl_c_ends_a_plan_with_keyboard_interrupt(monkeypatch: pytest.MonkeyPatch) -> None:

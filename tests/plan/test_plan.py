@@ -16,15 +16,12 @@ import pytest
 import trbdyn as trb
 from trbdyn import observables
 from trbdyn.cli import main
-from trbdyn.model.cases import paper_30310
-from trbdyn.model.motion import History
-from trbdyn.results.numbers import all_averages
-from trbdyn.study.planning import ground
-from trbdyn.study.planning.averaged import Records, check_names, joined, least_size, size_of
-from trbdyn.study.planning.candidates import SWITCHES, Candidate, candidates
-from trbdyn.study.planning.deciding import USUAL, decide, unseen_of
-from trbdyn.study.planning.looking import Looker, Seen, Tried, thrown
-from trbdyn.study.planning.probes import (
+from trbdyn.extras.design.planning import ground
+from trbdyn.extras.design.planning.averaged import Records, check_names, joined, least_size, size_of
+from trbdyn.extras.design.planning.candidates import SWITCHES, Candidate, candidates
+from trbdyn.extras.design.planning.deciding import USUAL, decide, unseen_of
+from trbdyn.extras.design.planning.looking import Looker, Seen, Tried, thrown
+from trbdyn.extras.design.planning.probes import (
     TOO_LONG,
     Influence,
     Length,
@@ -34,8 +31,11 @@ from trbdyn.study.planning.probes import (
     influence,
     run_quietly,
 )
-from trbdyn.study.planning.proposal import Plan, words
-from trbdyn.study.planning.wishes import changed, checked, with_effects
+from trbdyn.extras.design.planning.proposal import Plan, words
+from trbdyn.extras.design.planning.wishes import changed, checked, with_effects
+from trbdyn.model.cases import paper_30310
+from trbdyn.model.motion import History
+from trbdyn.results.numbers import all_averages
 
 WANT = {"torque": 0.05}
 

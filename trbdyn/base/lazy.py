@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import ast
 import gc
-import importlib
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+
+from trbdyn.base.extras import module as module_of
 
 
 def lazy_names(package: str, file: str) -> tuple[list[str], Callable[[str], Any], Callable[[], list[str]]]:
@@ -29,8 +30,8 @@ def lazy_names(package: str, file: str) -> tuple[list[str], Callable[[str], Any]
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
         module, own = places[name]
         with _uncollected():
-            value = None if module == package else getattr(importlib.import_module(module), own, None)
-            value = importlib.import_module(f"{module}.{own}") if value is None else value
+            value = None if module == package else getattr(module_of(module, name), own, None)
+            value = module_of(f"{module}.{own}", name) if value is None else value
         setattr(sys.modules[package], name, value)
         return value
 

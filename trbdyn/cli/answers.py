@@ -79,8 +79,8 @@ def spectrum(options: Options) -> int:
     speed_rpm, axial_load, loads[0].force[1] and so on. Commas, semicolons or tabs lie between cells; with semicolons or tabs,
     numbers may have decimal commas.
     """
+    from trbdyn import spectrum
     from trbdyn.run.rating import rating
-    from trbdyn.study.spectrum import spectrum
 
     say(rating(spectrum(options.case, options.table), cleanliness=options.cleanliness, reliability=options.reliability))
     return DONE

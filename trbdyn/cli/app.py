@@ -19,12 +19,11 @@ def app(options: Options) -> int:
     """Serve a page for the browser of this machine: choose a bearing, run it, see results, without programming. Nothing
     leaves this machine. Needs the extra: pip install 'trbdyn[app]', or '.[app]' in a folder with the sources.
     """
-    from trbdyn.app import need_nicegui
+    from trbdyn.base.extras import of_extras
     from trbdyn.base.own_files import folder_path
 
-    need_nicegui()
-    from trbdyn.app.server import serve
+    of_extras("need_nicegui")()
 
     folder = Path.home() / "trbdyn_app" if options.folder is None else folder_path(options.folder, "--folder")
-    serve(folder.absolute(), port=options.port, browser=not options.no_browser)
+    of_extras("serve")(folder.absolute(), port=options.port, browser=not options.no_browser)
     return DONE

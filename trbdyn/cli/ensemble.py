@@ -41,11 +41,12 @@ def ensemble(options: Options) -> int:
     """Run many designs of a case that are drawn from bands, and tell for each observable its spread, which inputs decide on
     it, and how well designs that were not run can be predicted. The same command goes on with a run that was stopped.
     """
+    from trbdyn import surrogate, uncertainty
+    from trbdyn.extras.design.surrogate import FEWEST_DRAWS
+    from trbdyn.extras.study.bands import Band
+    from trbdyn.extras.study.gather import listed_in
+    from trbdyn.extras.study.uncertainty import checked_bands
     from trbdyn.results import numbers
-    from trbdyn.study.bands import Band
-    from trbdyn.study.gather import listed_in
-    from trbdyn.study.surrogate import FEWEST_DRAWS, surrogate
-    from trbdyn.study.uncertainty import checked_bands, uncertainty
 
     scene, run = subject_with_changes(options.case, options.changes)
     bands = checked_bands([Band(path=path, low=low, high=high) for path, low, high in map(_band, options.band)])

@@ -20,7 +20,7 @@ from trbdyn.cli.outcome import DONE, say
 )
 def fmu(options: Options) -> int:
     """Write a bearing as a unit for co-simulation by FMI 3. Python with trbdyn has to be there where the unit runs."""
-    from trbdyn.fmi.export import write_fmu
+    from trbdyn import write_fmu
 
     scene, run = subject_with_changes(options.case, options.changes)
     output = options.output or f"{Path(options.case).stem}.fmu"

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import NoReturn, TextIO
 
 from trbdyn.base.printable import printable
-from trbdyn.errors import FileError, InputError, LoadError, TrbError
+from trbdyn.errors import FileError, InputError, LoadError, MissingExtra, TrbError
 
 DONE, FAILED, BAD_INPUT, FAULT, INTERRUPTED = 0, 1, 2, 3, 130
 
@@ -27,7 +27,7 @@ def run_command(command: Callable[[argparse.Namespace], int], options: argparse.
     """Run a command; what it raises becomes a line on stderr and an exit code."""
     try:
         return command(options)
-    except (InputError, LoadError, FileError) as error:
+    except (InputError, LoadError, FileError, MissingExtra) as error:
         return report_error(error, BAD_INPUT, options.debug)
     except TrbError as error:
         return report_error(error, FAILED, options.debug)

@@ -32,9 +32,9 @@ def plan(options: Options) -> int:
     """Find the cheapest simulation of a case that gives averages of its summary as exactly as is wanted: which effects it
     needs, how many nodes, which tolerances, how long. Writes the case that it proposes, and a picture.
     """
+    from trbdyn import plan
     from trbdyn.base.own_files import output_path, write_whole
     from trbdyn.run.case_text import case_text, rounded
-    from trbdyn.study.planning import plan
 
     want = named_numbers("--want", options.want, "NAME=ERROR", "torque=0.02")
     scene, _ = subject_with_changes(options.case, options.changes)

@@ -25,13 +25,12 @@ if TYPE_CHECKING:
 )
 def sweep(options: Options) -> int:
     """Run a parameter study from a TOML file."""
-    from trbdyn.study.runner import run
-    from trbdyn.study.study_file import load_study
+    from trbdyn import study as studies
 
-    study = load_study(options.study)
+    study = studies.load_study(options.study)
     folder = Path(options.study).stem if options.output is None else options.output
     try:
-        data = run(study, folder, workers=options.workers, resume=not options.again, progress=not options.quiet)
+        data = studies.run(study, folder, workers=options.workers, resume=not options.again, progress=not options.quiet)
     except KeyboardInterrupt:
         again = command(*(word for word in options.words if word != "--again"))
         say(
@@ -60,7 +59,7 @@ def problems(data: xarray.Dataset) -> list[str]:
 
 def table(data: xarray.Dataset) -> str:
     """Parameters and some observables as a table for people."""
-    from trbdyn.study.gather import listed_in
+    from trbdyn.extras.study.gather import listed_in
 
     shown = ["status", *listed_in(data, "sweep")]
     parameters = [str(dim) for dim in data.dims if dim in data.coords and dim != "case"]

@@ -29,9 +29,8 @@ def thermal(options: Options) -> int:
     """Find the temperatures of rings, rollers and oil at which a case makes as much heat as it gives off. Writes a
     picture.
     """
+    from trbdyn import HeatPaths, thermal
     from trbdyn.base.own_files import output_path
-    from trbdyn.model.heat import HeatPaths
-    from trbdyn.study.thermal import thermal
 
     given = named_numbers("--heat", options.heat, "NAME=VALUE", "outer_ring_to_surroundings=3.2")
     paths = HeatPaths(**given)

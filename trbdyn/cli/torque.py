@@ -36,11 +36,10 @@ def torque(options: Options) -> int:
     """Friction torque of a case over speed, load and temperature of the oil, split by what loses it. Writes the numbers as
     NAME.nc and a picture NAME.png.
     """
+    from trbdyn import study, torque_map
     from trbdyn.base.own_files import output_path
     from trbdyn.model.motion import value_at
     from trbdyn.model.scene import Scene
-    from trbdyn.study.gather import save
-    from trbdyn.study.torque_map import torque_map
 
     scene, run = subject_with_changes(options.case, options.changes)
     loads: list[float | tuple[float, float]] = [_load(text) for text in options.loads or ()]
@@ -64,7 +63,7 @@ def torque(options: Options) -> int:
         workers=options.workers,
         progress=not options.quiet,
     )
-    save(found.data, numbers, **again)
+    study.save(found.data, numbers, **again)
     found.picture(picture, **again)
     if not options.quiet:
         say(found)

@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
+from trbdyn.base.extras import of_extras
 from trbdyn.base.validation import Gap, Length, Model, Number, unit
 from trbdyn.errors import InputError
 from trbdyn.model.assumed import RIG
 from trbdyn.model.cage_body import CageBody
 from trbdyn.model.cage_drawing import CageDrawing
 from trbdyn.model.core_table import parameter
-from trbdyn.model.drawn.read import read_cage
 from trbdyn.model.material import Material
 from trbdyn.model.pocket import OtherPocket, Pocket
 
@@ -135,7 +135,8 @@ class Cage(Model):
         ImportError
             If the extra is not installed.
         """
-        drawn = read_cage(path, bearing, tolerance=tolerance, unit=unit, roller_plane=roller_plane, chamfer=chamfer)
+        how = {"tolerance": tolerance, "unit": unit, "roller_plane": roller_plane, "chamfer": chamfer}
+        drawn = of_extras("read_cage")(path, bearing, **how)
         density = (material or bearing.material).density
         if density is None:
             raise InputError.of(("material", "density"), None, "must be given: the cage's mass follows from it (kg/m3)")

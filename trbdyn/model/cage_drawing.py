@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Final
 
 from pydantic import Field
 
 from trbdyn.base.validation import Model, Number, unit
 
 Row = tuple[Annotated[Number, unit("1")], Annotated[Number, unit("1")], Annotated[Number, unit("1")]]
+
+MM: Final = 1e-3
+"""Gmsh converts every file to mm, whatever its unit, and this is that in m."""
+STEP_ENDINGS: Final = (".step", ".stp", ".p21")
+"""Endings of files that hold surfaces, not triangles alone."""
 
 
 class CageDrawing(Model):

@@ -35,9 +35,9 @@ class ElasticCage(Model):
         Bars of the finite-element model that are cracked through at their root at the small end; bar k lies behind pocket k in
         the direction of rotation. The surfaces of a crack pass through each other.
     file : str, optional
-        File of modes that `trbdyn.cage.modes.CageModes.save`, or a finite-element program's script, has written. Without it the
-        modes are those of a finite-element model, made from ``bearing.cage.body``, or meshed from ``bearing.cage.drawing``, and
-        the cage's material.
+        File of modes that `trbdyn.extras.elastic.modes.CageModes.save`, or a finite-element program's script, has written.
+        Without it the modes are those of a finite-element model, made from ``bearing.cage.body``, or meshed from
+        ``bearing.cage.drawing``, and the cage's material.
     file_sha256 : str, optional
         SHA-256 of that file, by which another file of the same name is found out; by default it is taken from the file.
 

@@ -7,6 +7,7 @@ right-handed.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
@@ -251,3 +252,17 @@ def _gap(face: Face, geometry: Geometry) -> float:
     centres = np.zeros((_FLANK_STATIONS, 3))
     centres[:, 2] = stations + radii * np.tan(half_angle)
     return float(np.min(face.distance(centres) - radii / np.cos(half_angle)))
+
+
+def pocket_axes(bearing: Bearing, pocket: int) -> FloatArray:
+    """Axes n, t, a of a pocket as rows, in the cage's frame."""
+    angle, lean = 2.0 * math.pi * pocket / bearing.n_rollers, bearing.geometry.roller_axis_angle
+    sine, cosine = math.sin(lean), math.cos(lean)
+    around = math.cos(angle), math.sin(angle)
+    return np.array(
+        [
+            [cosine * around[0], cosine * around[1], -sine],
+            [-around[1], around[0], 0.0],
+            [sine * around[0], sine * around[1], cosine],
+        ]
+    )

@@ -9,13 +9,13 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from trbdyn.base.extras import of_extras
 from trbdyn.base.reading import read_input_text
 from trbdyn.base.validation import Model, Number, Whole, unit
 from trbdyn.errors import InputError
 from trbdyn.model.assumed import ISO_SHORT, RIG
 from trbdyn.model.core_table import parameter
 from trbdyn.model.material import Material
-from trbdyn.model.trace import read_trace
 
 MOST_ROWS, MOST_COLUMNS = 10_000, 50
 """Most lines and columns of a table of a profile."""
@@ -159,7 +159,7 @@ class Profile(Model):
         FileError
             If the file cannot be read or used.
         """
-        trace = read_trace(path, effective_length, **how)
+        trace = of_extras("read_trace")(path, effective_length, **how)
         return cls.table(trace.stations.tolist(), trace.drops.tolist())
 
 

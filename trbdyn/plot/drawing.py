@@ -20,13 +20,13 @@ from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from numpy.typing import NDArray
 
+from trbdyn.base.extras import of_extras
 from trbdyn.base.own_files import digest_of
-from trbdyn.cage.cage_solid import pocket_axes
 from trbdyn.errors import InputError
 from trbdyn.model.bearing import Bearing
-from trbdyn.model.drawn.opened import STEP_ENDINGS, opened
+from trbdyn.model.cage_drawing import STEP_ENDINGS
 from trbdyn.model.outlines import cone_outline, cup_outline, rail_bands
-from trbdyn.model.pocket import Face
+from trbdyn.model.pocket import Face, pocket_axes
 from trbdyn.model.profiles import profile_drop
 from trbdyn.model.trace import Trace
 from trbdyn.plot.style import COLOURS, GREY, canvas, colour_of, plain, styled
@@ -248,7 +248,7 @@ def triangles_in_pocket(bearing: Bearing, pocket: int) -> Array:
         limit = f"must be that of {drawing.file}, which has changed since"
         raise InputError.of(("cage", "drawing", "sha256"), drawing.sha256, limit)
     size = bearing.roller.diameter
-    with opened(drawing.file, mesh_size=0.2 * size, unit="mm") as solid:
+    with of_extras("opened")(drawing.file, mesh_size=0.2 * size, unit="mm") as solid:
         triangles = np.concatenate([face.triangles for face in solid.faces])
     in_cage = (triangles - np.array(drawing.origin)) @ np.array(drawing.axes).T
     angle = 2.0 * np.pi * pocket / bearing.n_rollers

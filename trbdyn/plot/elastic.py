@@ -10,7 +10,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from trbdyn.cage.simulated import cage_modes, displacements
+from trbdyn.base.extras import of_extras
 from trbdyn.errors import InputError
 from trbdyn.plot.style import COLOURS, GREY, canvas, sequence, styled
 from trbdyn.results.result import Result
@@ -38,11 +38,11 @@ def cage_shape(result: Result, record: int | None = None, factor: float | None =
     InputError
         If the cage is rigid, or its modes come from a file.
     """
-    shape = cage_modes(result.scene).shape[:, :, :3]
+    shape = of_extras("cage_modes")(result.scene).shape[:, :, :3]
     if record is None:
         size = np.array([np.linalg.norm(np.tensordot(one, shape, 1), axis=1).max() for one in result["cage_mode"]])
         record = int(np.argmax(size))
-    built, moved = displacements(result.scene, result["cage_mode"][record])
+    built, moved = of_extras("displacements")(result.scene, result["cage_mode"][record])
     mesh = built.solid.basis.mesh
     nodes, faces = (
         mesh.p.T,

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import os
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trbdyn.cage.stress import CageStress, cage_stress
+from trbdyn.base.extras import of_extras
 from trbdyn.errors import InputError
 from trbdyn.model.motion import History
 from trbdyn.model.shaft import angle_turned
 from trbdyn.results import forces, observables
+from trbdyn.results.cage_stress import CageStress
 from trbdyn.results.fields import Field
 from trbdyn.results.peaks import Peaks
 from trbdyn.statics.creep import creep_time
@@ -327,7 +329,8 @@ class Derived(ABC):
             amplitude = self["cage_mode"]
         else:
             amplitude = np.zeros((0, 0))
-        return cage_stress(self.scene, self["time"], amplitude, self["pocket_force"], notch_factor=notch_factor)
+        find: Callable[..., CageStress] = of_extras("cage_stress")
+        return find(self.scene, self["time"], amplitude, self["pocket_force"], notch_factor=notch_factor)
 
     def force_spectrum(
         self, on: forces.On = "cage", along: forces.Along = "x", *, segments: int = 1

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn import _core
-from trbdyn.cage.simulated import cage_modes
+from trbdyn.base.extras import of_extras
 from trbdyn.errors import InputError
 from trbdyn.model import contact_line
 from trbdyn.model.motion import value_at
@@ -136,7 +136,7 @@ class Replay:
         for name, value in values.items():
             view[f"cage_{name}"] = value  # type: ignore[index]
         if result.scene.elastic_cage is not None:
-            speeds = 2.0 * np.pi * cage_modes(result.scene).frequency
+            speeds = 2.0 * np.pi * of_extras("cage_modes")(result.scene).frequency
             scale = np.maximum(speeds, _core.least_mode_frequency)
             rates = scale / speeds * result["cage_mode_rate"][index]
             for mode, (amplitude, rate) in enumerate(zip(scale * result["cage_mode"][index], rates, strict=True)):

@@ -24,6 +24,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
+from trbdyn.base.extras import of_extras
 from trbdyn.base.reading import read_input_text, tables_of
 from trbdyn.base.shipped import CASES
 from trbdyn.base.validation import Model
@@ -38,7 +39,6 @@ from trbdyn.model.pocket import Pocket
 from trbdyn.model.pocket_shapes import SHAPES
 from trbdyn.model.roller import Profile
 from trbdyn.model.scene import Scene, Start
-from trbdyn.model.trace import read_trace
 from trbdyn.run.options import RunOptions
 
 Table = dict[str, Any]
@@ -47,8 +47,6 @@ M = TypeVar("M", bound=Model)
 
 TABLES: Final = ("bearing", "lubricant", "effects", "scene", "start", "run")
 _OWN_TABLES: Final = ("bearing", "lubricant", "effects", "start")
-
-_TRACE: Final = tuple(inspect.signature(read_trace).parameters)[2:]
 
 
 def load_case(path: str | Path) -> tuple[Scene, RunOptions]:
@@ -157,9 +155,10 @@ def _with_traces(values: Table, table: Table, path: FieldPath) -> Table:
         "roller": without(_at(values, "roller"), "profile"),
     }
     length = build(Bearing, plain, path).roller.effective_length
+    known = {"trace", *tuple(inspect.signature(of_extras("read_trace")).parameters)[2:]}
     for inside, name in places:
         own = _at(table, *inside)[name]
-        check_names(own, {"trace", *_TRACE}, (*path, *inside, name))
+        check_names(own, known, (*path, *inside, name))
         with located((*path, *inside, name)):
             profile = Profile.from_trace(own["trace"], length, **without(own, "trace"))
         values = merged(values, {"roller": {name: profile}} if inside else {name: profile})

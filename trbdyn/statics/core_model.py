@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn import _core
-from trbdyn.cage.simulated import mode_rows
+from trbdyn.base.extras import of_extras
 from trbdyn.model.defect_rows import form_rows
 from trbdyn.model.flatten import (
     block_of,
@@ -35,7 +35,7 @@ def model_of(scene: Scene, block: NDArray[np.float64], instruction_set: str = ""
         diameter_deviation(scene),
         face_rows(scene),
         instruction_set,
-        mode_rows(scene),
+        np.zeros((0, 1)) if scene.elastic_cage is None else of_extras("mode_rows")(scene),
         form_rows(scene),
         drop_rows(scene),
     )

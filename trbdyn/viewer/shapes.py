@@ -13,10 +13,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import ConvexHull
 
-from trbdyn.cage.cage_solid import pocket_axes
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.outlines import cone_outline, cup_outline, rail_bands
-from trbdyn.model.pocket import Face
+from trbdyn.model.pocket import Face, pocket_axes
 from trbdyn.model.profiles import profile_drop
 from trbdyn.viewer.meshes import Mesh, flat_mesh, join, revolve, strip
 

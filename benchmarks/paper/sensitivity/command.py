@@ -126,9 +126,9 @@ def run(
     """
     from paper.sensitivity.picture import tornado
     from trbdyn import plot
+    from trbdyn.extras.study.runner import collect
+    from trbdyn.extras.study.runner import run as run_study
     from trbdyn.results.summary import write_json
-    from trbdyn.study.runner import collect
-    from trbdyn.study.runner import run as run_study
 
     made = plan.study(chosen)
     if run_cases:

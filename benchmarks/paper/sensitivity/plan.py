@@ -11,12 +11,12 @@ import numpy as np
 from paper.points import Condition
 from paper.sensitivity.inputs import Input, Level, inputs
 from trbdyn.errors import InputError
+from trbdyn.extras.study.definition import Base, Case, Study
 from trbdyn.model.bearing import Scatter
 from trbdyn.model.cases import paper_30310, rig_30310
 from trbdyn.model.effects import Effects
 from trbdyn.model.scene import Scene, Start
 from trbdyn.run.options import Group, RunOptions
-from trbdyn.study.definition import Base, Case, Study
 
 StartName = Literal["small", "full"]
 FULL: Final = 0.9

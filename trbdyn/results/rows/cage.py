@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from trbdyn.cage.simulated import cage_modes
+from trbdyn.base.extras import of_extras
 from trbdyn.results import notes, observables
 from trbdyn.results.confidence import percentile_as_mean
 from trbdyn.results.number import Number, Seen
@@ -93,7 +93,7 @@ def _deflection(seen: Seen) -> float | None:
     result, elastic = seen.run, seen.run.scene.elastic_cage
     if elastic is None or (elastic.file or result.scene.bearing.cage.drawing) is not None:
         return None  # a summary opens no file whose name stands in a result
-    shape, largest = cage_modes(result.scene).shape[:, :, :3], 0.0
+    shape, largest = of_extras("cage_modes")(result.scene).shape[:, :, :3], 0.0
     for first in range(0, len(result), RECORDS_AT_ONCE):
         amplitude = result["cage_mode"][first : first + RECORDS_AT_ONCE]
         largest = max(largest, float(np.linalg.norm(np.tensordot(amplitude, shape, 1), axis=2).max()))

@@ -1,0 +1,1 @@
+"""Maps over speed, load and temperature: friction torque, slip, the cage's whirl, and answers about one cage."""

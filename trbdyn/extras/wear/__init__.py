@@ -1,0 +1,1 @@
+"""Wear of raceways, rollers, ribs and pockets."""

@@ -1,1 +1,0 @@
-"""Cages from drawings: STEP and STL files, read by Gmsh and Open CASCADE (the extra ``trbdyn[cad]``)."""
