@@ -1,6 +1,6 @@
 """The inputs that are changed: nominal value, plausible other values, and why by so much.
 
-A level is a set of overrides as `trbdyn.extras.study` takes them. Values are assumptions as the nominal ones are; none was chosen after
+A level is a set of overrides as `trbdyn.study` takes them. Values are assumptions as the nominal ones are; none was chosen after
 looking at a result.
 """
 
