@@ -10,20 +10,20 @@
 #include <string.h>
 
 /* What malloc promises for every type. */
-enum { TRB_USUAL_ALIGNMENT = 16 };
+enum { TRB_MALLOC_ALIGNMENT = 16 };
 
 static inline void *trb_windows_calloc(size_t count, size_t size)
 {
   if (size > 0 && count > SIZE_MAX / size) return NULL;
-  void *made = _aligned_malloc(count * size > 0 ? count * size : 1, TRB_USUAL_ALIGNMENT);
+  void *made = _aligned_malloc(count * size > 0 ? count * size : 1, TRB_MALLOC_ALIGNMENT);
   if (made != NULL) memset(made, 0, count * size);
   return made;
 }
 
 #define aligned_alloc(alignment, bytes) _aligned_malloc(bytes, alignment)
-#define malloc(bytes)                   _aligned_malloc(bytes, TRB_USUAL_ALIGNMENT)
+#define malloc(bytes)                   _aligned_malloc(bytes, TRB_MALLOC_ALIGNMENT)
 #define calloc(count, size)             trb_windows_calloc(count, size)
-#define realloc(old, bytes)             _aligned_realloc(old, bytes, TRB_USUAL_ALIGNMENT)
+#define realloc(old, bytes)             _aligned_realloc(old, bytes, TRB_MALLOC_ALIGNMENT)
 #define free _aligned_free /* also the members of structs with this name */
 
 #endif

@@ -9,11 +9,11 @@
 #include "motion/rhs.h"
 #include "system/system.h"
 
-/* Near the largest radial load hardly loaded rollers let go and are caught again, and Newton's method is slow: from USUAL_STEPS on it ends
+/* Near the largest radial load hardly loaded rollers let go and are caught again, and Newton's method is slow: from STEPS_UNTIL_FAIR on it ends
  * at a balance that is good enough for a run, TRB_FAIR_SHARE of the largest load. It goes on so long only where less than
  * TRB_NEAR_SHARE of the largest load is unbalanced then: under a load that nothing carries the ring moves away for ever. From a guess
  * close by it takes a few steps, or never ends there. */
-enum { WARM_STEPS = 80, USUAL_STEPS = 300, MOST_STEPS = 3000 };
+enum { WARM_STEPS = 80, STEPS_UNTIL_FAIR = 300, MOST_STEPS = 3000 };
 #define TRB_FAIR_SHARE 1e-5
 #define TRB_NEAR_SHARE 1e-2
 /* Unbalanced force that counts as balanced: this share of the largest load, and at least this force, N. */
@@ -21,9 +21,9 @@ enum { WARM_STEPS = 80, USUAL_STEPS = 300, MOST_STEPS = 3000 };
 #define TRB_BALANCE_FORCE 1e-7
 /* Share of the imbalance that may be left after a step with a stiffness that is kept for the next one. */
 #define TRB_KEEP_STIFFNESS 0.05
-/* Stiffness of a usual contact, N/m, and the share of it that holds a roller which nothing else holds: it stays where it is as the ring
+/* Stiffness of a loaded contact, N/m, to its order, and the share of it that holds a roller which nothing else holds: it stays where it is as the ring
  * moves. */
-#define TRB_USUAL_CONTACT 1e9
+#define TRB_CONTACT_STIFFNESS 1e9
 #define TRB_LOOSE_SHARE 1e-9
 /* Share of it that holds cylindrical rollers in the middle between their ribs, where in a bearing friction does: a thousandth of a newton over
  * their clearance. */
@@ -71,7 +71,7 @@ typedef struct solver {
  * from the centrifugal force of a roller that nothing touches yet. */
 static double fineness(double elastic, double centrifugal)
 {
-  const double interference = sqrt(2.0 * fmax(elastic, 0.0) / TRB_USUAL_CONTACT) + fabs(centrifugal) / TRB_USUAL_CONTACT;
+  const double interference = sqrt(2.0 * fmax(elastic, 0.0) / TRB_CONTACT_STIFFNESS) + fabs(centrifugal) / TRB_CONTACT_STIFFNESS;
   return fmin(1.0, fmax(0.1 * interference, TRB_STEP_LEAST) / TRB_STEP_LENGTH);
 }
 
@@ -105,7 +105,7 @@ static void load(solver *s, const double *rollers, const double *displacement, t
 /* Adds the force that leads a cylindrical roller back along its axis; gives its potential. */
 static double keep_in_the_middle(double z, double *force)
 {
-  const double stiffness = TRB_MIDDLE_SHARE * TRB_USUAL_CONTACT;
+  const double stiffness = TRB_MIDDLE_SHARE * TRB_CONTACT_STIFFNESS;
   *force -= stiffness * z;
   return 0.5 * stiffness * z * z;
 }
@@ -260,20 +260,20 @@ static void hold_row(double *row, int width, int unknown)
   row[unknown] = 1.0;
 }
 
-/* Stiffness of a usual contact against a coordinate of a roller. */
-static double usual_stiffness(const trb_model *m, int coordinate)
+/* That stiffness against a coordinate of a roller. */
+static double stiffness_against(const trb_model *m, int coordinate)
 {
   const double arm = 0.5 * m->params.effective_length;
-  return coordinate < 2 ? TRB_USUAL_CONTACT : TRB_USUAL_CONTACT * arm * arm / 3.0;
+  return coordinate < 2 ? TRB_CONTACT_STIFFNESS : TRB_CONTACT_STIFFNESS * arm * arm / 3.0;
 }
 
-/* Rows of a roller's stiffness with what the ring does to it, `width` apart, with a share of the stiffness of usual contacts added. */
+/* Rows of a roller's stiffness with what the ring does to it, `width` apart, with a share of the stiffness of loaded contacts added. */
 static void fill_rows(const solver *s, int roller, double damping, int width, double *a)
 {
   for (int i = 0; i < N; i++) {
     for (int c = 0; c < N; c++) a[width * i + c] = s->own[N * N * roller + N * i + c];
     for (int c = 0; c < R; c++) a[width * i + N + c] = s->to_ring[N * R * roller + R * i + c];
-    a[width * i + i] += damping * usual_stiffness(s->m, i);
+    a[width * i + i] += damping * stiffness_against(s->m, i);
   }
 }
 
@@ -281,8 +281,8 @@ static void fill_rows(const solver *s, int roller, double damping, int width, do
 static int newton_step(solver *s, double damping, double *step_rollers, double *step_ring)
 {
   const int    n = s->m->n_rollers;
-  const double radius = 0.5 * s->m->params.pitch_diameter, across = TRB_USUAL_CONTACT * radius * radius;
-  const double ring_scale[R] = {TRB_USUAL_CONTACT, TRB_USUAL_CONTACT, TRB_USUAL_CONTACT, across, across};
+  const double radius = 0.5 * s->m->params.pitch_diameter, across = TRB_CONTACT_STIFFNESS * radius * radius;
+  const double ring_scale[R] = {TRB_CONTACT_STIFFNESS, TRB_CONTACT_STIFFNESS, TRB_CONTACT_STIFFNESS, across, across};
   enum { WIDTH = N + R + 1 };
   double ring[R * (R + 1)];
   for (int i = 0; i < R; i++) {
@@ -357,9 +357,9 @@ static trb_status iterate(solver *s, double *step_rollers, double *step_ring, tr
   for (e->iterations = 0; e->iterations < MOST_STEPS; e->iterations++) {
     e->residual = off;
     if (off < fmax(TRB_BALANCE_FORCE, TRB_BALANCE_SHARE * largest_load(s))) return TRB_OK;
-    if (e->iterations >= USUAL_STEPS && is_fair(s, off)) return TRB_OK;
+    if (e->iterations >= STEPS_UNTIL_FAIR && is_fair(s, off)) return TRB_OK;
     if (e->warm && e->iterations == WARM_STEPS) break;
-    if (e->iterations == USUAL_STEPS && !(off < TRB_NEAR_SHARE * largest_load(s))) break;
+    if (e->iterations == STEPS_UNTIL_FAIR && !(off < TRB_NEAR_SHARE * largest_load(s))) break;
     if (!known) differentiate(s, 0);
     int          accepted = 0;
     const int    reused = known;
@@ -465,7 +465,7 @@ static trb_status condense(solver *s, trb_message *message)
     double        a[N * WIDTH];
     fill_rows(s, j, TRB_LOOSE_SHARE, WIDTH, a);
     for (int i = 0; i < N; i++) {
-      const int by_friction = i == 1 && trb_has_cylinders(s->m) && a[WIDTH * i + i] < TRB_RIB_SHARE * TRB_USUAL_CONTACT;
+      const int by_friction = i == 1 && trb_has_cylinders(s->m) && a[WIDTH * i + i] < TRB_RIB_SHARE * TRB_CONTACT_STIFFNESS;
       if (s->held[i] || by_friction) hold_row(a + (size_t)WIDTH * i, WIDTH, i);
     }
     if (!eliminate(a, N, R))

@@ -144,7 +144,7 @@ static double channel_integral(const double *a, int channel, double s, double h)
 /* Parts of what lies between two joints at whose ends a step ends; steps that it takes at least where these are no shorter than a step that
  * bearings take at usual speeds, s. */
 enum { STEPS_AN_INTERVAL = 8, STEPS_FOR_POWERS = 32 };
-static const double usual_step = 5e-5;
+static const double common_step = 5e-5;
 /* What the number of steps to a joint may be above a whole number. */
 #define SAME_NUMBER 1e-6
 
@@ -204,7 +204,7 @@ double trb_motion_longest_step(const trb_motion *motion, double time, double mos
 {
   if (motion->n == 1 || time < first_time(motion) || (time >= last_time(motion) && !repeats(motion))) return most;
   const stretch at = stretch_at(motion, time);
-  const double  longest = fmin(most, fmax(at.length / STEPS_FOR_POWERS, fmin(at.length / STEPS_AN_INTERVAL, usual_step)));
+  const double  longest = fmin(most, fmax(at.length / STEPS_FOR_POWERS, fmin(at.length / STEPS_AN_INTERVAL, common_step)));
   /* a hair more, so that by rounding the last of them does not end almost there */
   return (1.0 + TRB_SAME_TIME) * at.left / fmax(ceil(at.left / longest - SAME_NUMBER), 1.0);
 }

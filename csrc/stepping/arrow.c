@@ -3,10 +3,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LINE = 8 }; /* entries of a cache line */
+#include "stepping/constants.h"
 
 /* Entries of an array of the borders, so that the next one starts with a cache line. */
-static size_t padded(int rows, int columns) { return ((size_t)rows * (size_t)columns + LINE - 1) / LINE * LINE; }
+static size_t padded(int rows, int columns)
+{
+  return ((size_t)rows * (size_t)columns + TRB_CACHE_LINE - 1) / TRB_CACHE_LINE * TRB_CACHE_LINE;
+}
 
 trb_status trb_arrow_create(int n_rollers, int hub_width, trb_arrow **arrow, trb_message *message)
 {

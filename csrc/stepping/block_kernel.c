@@ -5,12 +5,7 @@
 
 #include "base/variant.h"
 #include "stepping/blocks.h"
-
-/* The entry on the diagonal is taken as the pivot if it is at least this share of the largest entry: no multiplier is then larger than 1
- * over it. */
-#define DIAGONAL_SHARE 0.1
-
-enum { ACCUMULATORS = 16 };
+#include "stepping/constants.h"
 
 static inline void swap(double *a, double *b)
 {
@@ -69,12 +64,12 @@ static inline void take(double (*restrict a)[TRB_NP], int n, int c)
 
 static int all_finite(const double *x, int n)
 {
-  double    check[ACCUMULATORS] = {0}, sum = 0.0;
-  const int whole = n - n % ACCUMULATORS;
-  for (int i = 0; i < whole; i += ACCUMULATORS)
-    for (int k = 0; k < ACCUMULATORS; k++) check[k] += 0.0 * x[i + k];
+  double    check[TRB_SUMS_SIDE_BY_SIDE] = {0}, sum = 0.0;
+  const int whole = n - n % TRB_SUMS_SIDE_BY_SIDE;
+  for (int i = 0; i < whole; i += TRB_SUMS_SIDE_BY_SIDE)
+    for (int k = 0; k < TRB_SUMS_SIDE_BY_SIDE; k++) check[k] += 0.0 * x[i + k];
   for (int i = whole; i < n; i++) check[i - whole] += 0.0 * x[i];
-  for (int k = 0; k < ACCUMULATORS; k++) sum += check[k];
+  for (int k = 0; k < TRB_SUMS_SIDE_BY_SIDE; k++) sum += check[k];
   return sum == 0.0;
 }
 
@@ -85,7 +80,7 @@ static inline int invert_as_is(double (*restrict a)[TRB_NP], int n)
   int    c = 0;
   for (; c + 1 < n; c += 2) most = trb_max(take_two(a, n, c), most);
   if (c < n) take(a, n, c);
-  return most * DIAGONAL_SHARE <= 1.0 && all_finite(&a[0][0], n * TRB_NP);
+  return most * trb_diagonal_share <= 1.0 && all_finite(&a[0][0], n * TRB_NP);
 }
 
 /* Largest entry by magnitude of row c from column c on. */
@@ -102,7 +97,7 @@ static inline int pivot_of(const double *row, int n, int c)
 {
   const double largest = largest_from(row, c);
   if (!(largest > 0.0)) return -1;
-  if (fabs(row[c]) >= DIAGONAL_SHARE * largest) return c;
+  if (fabs(row[c]) >= trb_diagonal_share * largest) return c;
   for (int k = c + 1; k < n; k++)
     if (fabs(row[k]) == largest) return k;
   return -1;
@@ -225,8 +220,8 @@ static inline int part_size(int width, int part) { return width - part * TRB_NP 
   for (int part = 0; (bits) >> part != 0U; part++) \
     if ((bits) >> part & 1U)
 
-/* Columns of a hub of the usual width. */
-typedef const double (*usual_columns)[TRB_HUB_USUAL];
+/* Columns of a hub of one rigid body. */
+typedef const double (*one_body_columns)[TRB_HUB_ONE_BODY];
 
 static void border(const trb_arrow_border *b, double gamma, const trb_arrow_factor_block *own, trb_arrow_factor_border *g,
                    const trb_hub_factor *hub)
@@ -234,11 +229,11 @@ static void border(const trb_arrow_border *b, double gamma, const trb_arrow_fact
   const int     width = hub->width, room = hub->room;
   double *const schur = hub->schur;
   g->parts = b->parts;
-  if (width == TRB_HUB_USUAL) {
-    for (int i = 0; i < TRB_NR * TRB_HUB_USUAL; i++) g->from[i] = -gamma * b->from[i];
-    for (int c = 0; c < TRB_HUB_USUAL; c++) set_product(own->inverse, TRB_NR, b->to_hub + c * TRB_NR, -gamma, g->solved + c * TRB_NP);
-    for (int c = 0; c < TRB_HUB_USUAL; c++)
-      add_product((usual_columns)g->from, TRB_NR, g->solved + c * TRB_NP, -1.0, schur + c * TRB_HUB_USUAL);
+  if (width == TRB_HUB_ONE_BODY) {
+    for (int i = 0; i < TRB_NR * TRB_HUB_ONE_BODY; i++) g->from[i] = -gamma * b->from[i];
+    for (int c = 0; c < TRB_HUB_ONE_BODY; c++) set_product(own->inverse, TRB_NR, b->to_hub + c * TRB_NR, -gamma, g->solved + c * TRB_NP);
+    for (int c = 0; c < TRB_HUB_ONE_BODY; c++)
+      add_product((one_body_columns)g->from, TRB_NR, g->solved + c * TRB_NP, -1.0, schur + c * TRB_HUB_ONE_BODY);
     return;
   }
   EACH_PART(part, b->parts)
@@ -261,7 +256,7 @@ static int invert_wide(int n, int room, double *restrict a, double *restrict row
     int           best = c;
     for (int k = c + 1; k < n; k++)
       if (fabs(at[k]) > fabs(at[best])) best = k;
-    if (fabs(at[c]) >= DIAGONAL_SHARE * fabs(at[best])) best = c;
+    if (fabs(at[c]) >= trb_diagonal_share * fabs(at[best])) best = c;
     if (!(fabs(at[best]) > 0.0)) return 0;
     pivot[c] = best;
     for (int i = 0; best != c && i < n; i++) swap(&a[i * room + c], &a[i * room + best]);
@@ -287,14 +282,14 @@ static int invert_wide(int n, int room, double *restrict a, double *restrict row
   return all_finite(a, n * room);
 }
 
-static int invert_usual(const double (*schur)[TRB_NP], double (*inverse)[TRB_NP])
+static int invert_one_body(const double (*schur)[TRB_NP], double (*inverse)[TRB_NP])
 {
-  return invert(0.0, 1.0, schur, inverse, TRB_HUB_USUAL);
+  return invert(0.0, 1.0, schur, inverse, TRB_HUB_ONE_BODY);
 }
 
 static int invert_hub(const trb_hub_factor *hub)
 {
-  if (hub->width == TRB_HUB_USUAL) return invert_usual((const double (*)[TRB_NP])hub->schur, (double (*)[TRB_NP])hub->inverse);
+  if (hub->width == TRB_HUB_ONE_BODY) return invert_one_body((const double (*)[TRB_NP])hub->schur, (double (*)[TRB_NP])hub->inverse);
   memcpy(hub->inverse, hub->schur, (size_t)(hub->width * hub->room) * sizeof *hub->inverse);
   return invert_wide(hub->width, hub->room, hub->inverse, hub->scratch, hub->pivot);
 }
@@ -309,23 +304,23 @@ static inline void solve_roller(const trb_arrow_factor_block *own, double *z)
 
 static inline int chosen_one(const int *chosen, int k) { return chosen == NULL ? k : chosen[k]; }
 
-static void solve_usual(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, const int *chosen, int n,
-                        usual_columns inverse, double *restrict x)
+static void solve_one_body(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, const int *chosen, int n,
+                           one_body_columns inverse, double *restrict x)
 {
   double *const y = x + n * TRB_NR;
-  double        right[TRB_HUB_USUAL];
+  double        right[TRB_HUB_ONE_BODY];
   memcpy(right, y, sizeof right);
   for (int k = 0; k < n; k++) {
     const int     j = chosen_one(chosen, k);
     double *const z = x + k * TRB_NR;
     solve_roller(&own[j], z);
-    if (border[j].parts != 0U) add_product((usual_columns)border[j].from, TRB_NR, z, -1.0, right);
+    if (border[j].parts != 0U) add_product((one_body_columns)border[j].from, TRB_NR, z, -1.0, right);
   }
-  set_product(inverse, TRB_HUB_USUAL, right, 1.0, y);
+  set_product(inverse, TRB_HUB_ONE_BODY, right, 1.0, y);
   memcpy(right, y, sizeof right);
   for (int k = 0; k < n; k++) {
     const int j = chosen_one(chosen, k);
-    if (border[j].parts != 0U) add_product((usual_columns)border[j].solved, TRB_HUB_USUAL, right, -1.0, x + k * TRB_NR);
+    if (border[j].parts != 0U) add_product((one_body_columns)border[j].solved, TRB_HUB_ONE_BODY, right, -1.0, x + k * TRB_NR);
   }
 }
 
@@ -348,7 +343,7 @@ static void solve_wide(const trb_arrow_factor_block *own, const trb_arrow_factor
   for (int k = 0; k < n; k++) {
     const int j = chosen_one(chosen, k);
     EACH_PART(part, border[j].parts)
-    add_product((usual_columns)(border[j].solved + part * TRB_NP * TRB_NP), part_size(width, part), found + part * TRB_NP, -1.0,
+    add_product((one_body_columns)(border[j].solved + part * TRB_NP * TRB_NP), part_size(width, part), found + part * TRB_NP, -1.0,
                 x + k * TRB_NR);
   }
 }
@@ -356,7 +351,7 @@ static void solve_wide(const trb_arrow_factor_block *own, const trb_arrow_factor
 static void solve(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, const int *chosen, int n,
                   const trb_hub_factor *hub, double *x)
 {
-  if (hub->width == TRB_HUB_USUAL) solve_usual(own, border, chosen, n, (usual_columns)hub->inverse, x);
+  if (hub->width == TRB_HUB_ONE_BODY) solve_one_body(own, border, chosen, n, (one_body_columns)hub->inverse, x);
   else solve_wide(own, border, chosen, n, hub, x);
 }
 

@@ -13,8 +13,8 @@ _Static_assert((int)TRB_RING_OF_ROLLER == (int)TRB_TANGENT_IN, "a ring's part of
 /* The hub: all bodies that are not rolling elements, with `width` coordinates together. The width is known when a simulation is made.
  * Columns of the hub's length are padded by zeros to a multiple of TRB_NP, their room, so that loops over them have no remainder. They
  * are made of parts of TRB_NP entries, and a border says which parts it has: a roller that touches no pocket has none of the cage. The
- * usual width, that of the cage alone, has loops of its own. */
-enum { TRB_HUB_USUAL = TRB_NP };
+ * width of one rigid body, the cage alone, has loops of its own. */
+enum { TRB_HUB_ONE_BODY = TRB_NP };
 static inline int trb_hub_room(int width) { return (width + TRB_NP - 1) / TRB_NP * TRB_NP; }
 
 /* Block and borders of a roller. They are stored apart, so that the blocks, which every system needs, lie in one stretch of memory. */

@@ -9,19 +9,11 @@
 #define TRB_STEPPING_COURSE_H
 
 #include "motion/dynamics.h"
+#include "stepping/constants.h"
 
-enum {
-  /* entries of a body: its coordinates, its spin angle, quadratures */
-  TRB_COURSE_ROOM = 32,
-  /* steps that a body may be ahead of another one, and how many earlier steps are kept, so that it can be asked for the time of the other one's last
-   * step and be taken back to its end */
-  TRB_COURSE_LEAD = 8,
-  TRB_COURSE_KEPT = 2 * TRB_COURSE_LEAD + 2
-};
+/* Entries of a body: its coordinates, its spin angle, quadratures. */
+enum { TRB_COURSE_ROOM = 32 };
 _Static_assert((int)TRB_FLOW_SIZE <= (int)TRB_COURSE_ROOM && 12 + (int)TRB_N_QUADRATURES <= (int)TRB_COURSE_ROOM, "room for all bodies");
-
-/* Of the formula. */
-static const double trb_course_l1 = 1.5, trb_course_l2 = 0.5;
 
 /* A step: its polynomial holds from its begin to its end. */
 typedef struct trb_course_step {

@@ -6,9 +6,7 @@
 #include <math.h>
 
 #include "motion/fast_pairs.h"
-
-/* Steps ahead in which a gap may close. */
-static const double ahead = 3.0;
+#include "stepping/constants.h"
 
 trb_status trb_impacts_create(const trb_model *m, trb_impacts *impacts, trb_message *message)
 {
@@ -54,7 +52,7 @@ static double rise_of(const trb_dynamics *d, const trb_pair *pair)
   const trb_model *m = d->model;
   const trb_body  *other = &d->system->bodies[pair->b];
   const double     roller = m->geometry.roller_mass, body = other->kind->mass(m, other);
-  return sqrt(roller * body / ((roller + body) * pair->kind->stiffness(m, 1e-6)));
+  return sqrt(roller * body / ((roller + body) * pair->kind->stiffness(m, trb_impact_interference)));
 }
 
 /* Where the bodies are that may be hit; those of the dynamics are at another instant. */
@@ -69,7 +67,7 @@ static void place(trb_impacts *impacts, const trb_dynamics *d, const trb_drive *
   }
 }
 
-static int is_far(double left, double step, double speed) { return left > ahead * step * speed; }
+static int is_far(double left, double step, double speed) { return left > trb_impact_steps_ahead * step * speed; }
 
 /* Factor of the tolerances of two bodies. most: the largest speed since they met, which is kept. */
 static double factor_of(const trb_approach *now, double step, const trb_impact_measure *measure, double *most)

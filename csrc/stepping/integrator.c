@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "stepping/blocks.h"
+#include "stepping/constants.h"
 
 const trb_setting_info trb_setting_table[TRB_N_SETTINGS] = {
 #define TRB_SETTING_INFO(name, standard, lower, upper, text) {#name, standard, lower, upper, text},
@@ -19,22 +20,20 @@ void trb_integrator_choose(trb_integrator *it)
   it->kind = it->reason == NULL ? &trb_integrator_multirate : &trb_integrator_bdf;
 }
 
-/* Absolute tolerances of velocities are at most this times the relative tolerance times the mean rolling speed. */
-static const double slow_share = 10.0;
-
 /* Share of a velocity's absolute tolerance that holds at a speed of the shaft relative to the outer ring: no more than a share of the rolling speed, so that slow
  * rotation, whose slip is a small share of a small speed, is followed as exactly as fast rotation. */
 static double speed_share(const trb_integrator *it, const trb_model *m, double speed)
 {
   const double rolling = 0.5 * m->params.roller_diameter * fabs(m->geometry.roller_spin_ratio * speed);
-  return trb_min(1.0, slow_share * it->settings.rtol * trb_max(rolling, m->params.speed_floor) / it->settings.atol_velocity);
+  return trb_min(1.0, trb_slow_share * it->settings.rtol * trb_max(rolling, m->params.speed_floor) / it->settings.atol_velocity);
 }
 
 /* Tolerances of the entries from one on, which are the coordinates of a body of a system. */
 static void set_entries(trb_integrator *it, const trb_system *system, int first, int n, double share)
 {
   const trb_settings *s = &it->settings;
-  const double        scale[TRB_N_TOLERANCES] = {s->atol_position, s->atol_angle, share * s->atol_velocity, share * s->atol_spin, 1e30};
+  const double        scale[TRB_N_TOLERANCES] = {s->atol_position, s->atol_angle, share * s->atol_velocity, share * s->atol_spin,
+                                                 trb_tolerance_of_integrals};
   const double        relative[TRB_N_TOLERANCES] = {0.0, 0.0, s->rtol, s->rtol, 0.0};
   for (int i = first; i < first + n; i++) {
     const trb_tolerance kind = trb_state_tolerance(system, i);
@@ -46,7 +45,7 @@ static void set_entries(trb_integrator *it, const trb_system *system, int first,
 /* Quadratures and spin angles are integrated beside the motion but do not control the step. */
 void trb_integrator_set_tolerances(trb_integrator *it)
 {
-  for (int i = it->n_main; i < it->n; i++) it->scale[i] = 1e30, it->relative[i] = 0.0;
+  for (int i = it->n_main; i < it->n; i++) it->scale[i] = trb_tolerance_of_integrals, it->relative[i] = 0.0;
   for (int k = 0; k < it->assembly->n; k++) {
     const trb_system *system = &it->assembly->members[k];
     trb_drive         drive;
@@ -85,7 +84,7 @@ double trb_integrator_stop(const trb_integrator *it)
 {
   double stop = INFINITY;
   for (int k = 0; k < it->assembly->n; k++) stop = fmin(stop, trb_motion_stop(it->members[k].motion, it->time));
-  return fmin(stop, TRB_NEVER);
+  return fmin(stop, trb_never);
 }
 
 double trb_integrator_longest_step(const trb_integrator *it)

@@ -103,12 +103,6 @@ struct trb_integrator {
   void                      *self;     /* of the kind */
 };
 
-/* Steps, at most, between factorisations, and between evaluations of the part of the Jacobian from pockets. */
-enum { TRB_SETUP_EVERY = 20, TRB_JACOBIAN_EVERY = 10 };
-
-/* A time later than the end of any run, s. */
-#define TRB_NEVER 1e30
-
 extern const trb_integrator_kind        trb_integrator_bdf, trb_integrator_erk, trb_integrator_multirate;
 extern const trb_integrator_kind *const trb_integrator_kinds[];
 extern const int                        trb_n_integrator_kinds;

@@ -2,10 +2,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "stepping/constants.h"
 #include "stepping/integrator.h"
 #include "stepping/sundials_context.h"
-
-enum { ORDER = 5 };
 
 typedef struct erk {
   trb_sundials   sundials;
@@ -47,7 +46,7 @@ static trb_status erk_create(trb_integrator *it, trb_message *message)
   trb_sundials_quiet_erk(&self->sundials, self->memory);
   CHECK(TRB_ARK(SetUserData)(self->memory, it));
   CHECK(TRB_ARK(WFtolerances)(self->memory, weights));
-  CHECK(TRB_ARK(SetOrder)(self->memory, ORDER));
+  CHECK(TRB_ARK(SetOrder)(self->memory, TRB_EXPLICIT_ORDER));
   CHECK(TRB_ARK(SetMaxStep)(self->memory, it->settings.max_step));
   CHECK(TRB_ARK(SetInterpolantDegree)(self->memory, 3));
   if (it->settings.first_step > 0.0) CHECK(TRB_ARK(SetInitStep)(self->memory, it->settings.first_step));
@@ -85,7 +84,7 @@ static void read_totals(const trb_integrator *it, trb_statistics *s)
   (void)TRB_ARK(GetNumErrTestFails)(self->memory, &value);
   s->error_failures = self->before.error_failures + (double)value;
   (void)TRB_ARK(GetLastStep)(self->memory, &s->last_step);
-  s->last_order = ORDER;
+  s->last_order = TRB_EXPLICIT_ORDER;
   s->body_steps = s->steps * trb_integrator_n_bodies(it);
   s->restarts = self->before.restarts + 1;
   s->smallest_step = self->smallest;

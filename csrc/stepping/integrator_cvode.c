@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "stepping/arrow_solver.h"
+#include "stepping/constants.h"
 #include "stepping/integrator.h"
 #include "stepping/jacobian.h"
 #include "stepping/newton.h"
@@ -113,8 +114,8 @@ static trb_status configure(trb_integrator *it, trb_message *message)
   CHECK(CVodeSetLinSysFn(self->memory, linear_system));
   CHECK(CVodeSetMaxOrd(self->memory, (int)it->settings.max_order));
   CHECK(CVodeSetMaxStep(self->memory, it->settings.max_step));
-  CHECK(CVodeSetMaxErrTestFails(self->memory, 15));
-  CHECK(CVodeSetMaxConvFails(self->memory, 25));
+  CHECK(CVodeSetMaxErrTestFails(self->memory, TRB_MOST_ERROR_FAILURES));
+  CHECK(CVodeSetMaxConvFails(self->memory, TRB_MOST_SOLVE_FAILURES));
   CHECK(CVodeSetLSetupFrequency(self->memory, TRB_SETUP_EVERY));
   CHECK(CVodeSetNonlinConvCoef(self->memory, it->settings.newton_share));
   CHECK(CVodeSetJacEvalFrequency(self->memory, TRB_JACOBIAN_EVERY));

@@ -6,15 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "stepping/constants.h"
 #include "stepping/multirate.h"
 #include "motion/fast_pairs.h"
-
-/* Tries of one step; errors too large, one after the other, after which a body begins again from its rates. */
-enum { MOST_TRIES = 60, UNTIL_AGAIN = 3 };
-/* Length of the first step where none is given, s. */
-static const double first_step = 1e-9;
-/* Next step over the last one: what is worth it, and the most; over one that was not solved, or whose error was too large; margin of the error. */
-static const double least_growth = 1.5, most_growth = 10.0, unsolved = 0.25, least_cut = 0.2, most_cut = 0.9, margin = 6.0;
 
 static trb_team hub_team(const trb_multirate *s) { return (trb_team){.rollers = s->together, .n = s->n_together, .with_hub = 1}; }
 
@@ -30,11 +24,11 @@ static double end_of(const trb_integrator *it, const trb_team *team)
   const trb_multirate *s = it->self;
   const trb_course    *course = &trb_team_head(s, team)->course;
   const trb_motion    *motion = it->members[0].motion;
-  const double         from = course->now.end, stop = fmin(trb_motion_stop(motion, from), TRB_NEVER);
+  const double         from = course->now.end, stop = fmin(trb_motion_stop(motion, from), trb_never);
   double               step = fmin(course->now.scale, trb_motion_longest_step(motion, from, it->settings.max_step));
   const int            last = from + step >= stop;
   if (last) step = stop - from;
-  else if (from + 1.5 * step > stop) step = 0.5 * (stop - from); /* no sliver is left */
+  else if (from + trb_sliver * step > stop) step = trb_half_step * (stop - from); /* no sliver is left */
   set_step(s, team, step);
   return last ? stop : from + step;
 }
@@ -64,17 +58,17 @@ static trb_status shorten(trb_integrator *it, const trb_team *team, trb_outcome 
   trb_multirate *s = it->self;
   trb_mover     *head = trb_team_head(s, team);
   const double   step = head->course.now.scale;
-  double         by = unsolved;
+  double         by = trb_unsolved_cut;
   if (outcome == TRB_STEP_WRONG) {
     s->count.error_failures++;
-    by = trb_clamp(1.0 / cbrt(margin * error), least_cut, most_cut);
+    by = trb_clamp(1.0 / cbrt(trb_error_margin * error), trb_least_cut, trb_most_cut);
   }
   head->errors = outcome == TRB_STEP_WRONG ? head->errors + 1 : 0;
   set_step(s, team, by * step);
-  head->course.wait = TRB_UNTIL_LONGER;
+  head->course.wait = TRB_STEPS_UNTIL_LONGER;
   if (!(by * step >= it->settings.smallest_step) || head->course.now.end + by * step == head->course.now.end)
     return trb_fail(message, TRB_ERR_STEP, "the step of %s fell to %g s", team->with_hub ? "the cage" : "a roller", by * step);
-  if (head->errors > 0 && head->errors % UNTIL_AGAIN == 0) begin_again(it, team);
+  if (head->errors > 0 && head->errors % TRB_ERRORS_UNTIL_RESTART == 0) begin_again(it, team);
   return TRB_OK;
 }
 
@@ -92,15 +86,15 @@ static void accept(trb_integrator *it, const trb_team *team, double end, double 
   s->count.smallest_step = fmin(s->count.smallest_step, step);
   head->errors = 0;
   if (head->course.wait > 0) return;
-  const double growth = fmin(1.0 / (cbrt(margin * error) + 1e-6), most_growth);
-  head->course.wait = growth >= least_growth ? TRB_UNTIL_LONGER : 1;
-  if (growth >= least_growth) set_step(s, team, fmin(step * growth, it->settings.max_step));
+  const double growth = fmin(1.0 / (cbrt(trb_error_margin * error) + trb_growth_offset), trb_most_growth);
+  head->course.wait = growth >= trb_least_growth ? TRB_STEPS_UNTIL_LONGER : 1;
+  if (growth >= trb_least_growth) set_step(s, team, fmin(step * growth, it->settings.max_step));
 }
 
 static trb_status step_alone(trb_integrator *it, int roller, trb_message *message)
 {
   const trb_team team = {.rollers = &roller, .n = 1, .with_hub = 0};
-  for (int i = 0; i < MOST_TRIES; i++) {
+  for (int i = 0; i < TRB_MOST_TRIES; i++) {
     double            error;
     const double      end = end_of(it, &team);
     const trb_outcome outcome = trb_multirate_try(it, &team, end, &error);
@@ -111,7 +105,7 @@ static trb_status step_alone(trb_integrator *it, int roller, trb_message *messag
     const trb_status status = shorten(it, &team, outcome, error, message);
     if (status != TRB_OK) return status;
   }
-  return trb_fail(message, TRB_ERR_STEP, "roller %d: no step in %d tries", roller, MOST_TRIES);
+  return trb_fail(message, TRB_ERR_STEP, "roller %d: no step in %d tries", roller, TRB_MOST_TRIES);
 }
 
 /* Rollers by themselves step until they are no earlier than the end of the hub's step. A roller whose steps are much shorter makes that step end where it
@@ -155,7 +149,7 @@ static void read(const trb_integrator *it, double time, double *y)
 static trb_status multirate_step(trb_integrator *it, trb_message *message)
 {
   trb_multirate *s = it->self;
-  const int      most = MOST_TRIES + s->n_rollers;
+  const int      most = TRB_MOST_TRIES + s->n_rollers;
   if (!s->jacobian->tangents->has_slopes)
     trb_jacobian_slopes(s->jacobian, it->time, it->y, it->members[0].dynamics->everyone, s->n_rollers);
   for (int i = 0; i < most; i++) {
@@ -174,7 +168,7 @@ static trb_status multirate_step(trb_integrator *it, trb_message *message)
     }
     if (trb_multirate_join(it, end) > 0) {
       team = hub_team(s);
-      set_step(s, &team, 0.5 * step);
+      set_step(s, &team, trb_half_step * step);
       continue;
     }
     accept(it, &team, end, error);
@@ -205,7 +199,7 @@ static trb_status multirate_restart(trb_integrator *it, trb_message *message)
     trb_mover   *b = &s->movers[j];
     const int    is_hub = j == s->n_rollers;
     double       y[TRB_COURSE_ROOM] = {0}, rates[TRB_COURSE_ROOM] = {0};
-    const double step = it->settings.first_step > 0.0 ? it->settings.first_step : first_step;
+    const double step = it->settings.first_step > 0.0 ? it->settings.first_step : trb_first_step;
     memset(b, 0, sizeof *b);
     b->first = is_hub ? trb_state_hub(system) : trb_state_roller(system, j);
     b->course.main = is_hub ? system->layout.hub_width : TRB_NR;
@@ -221,7 +215,7 @@ static trb_status multirate_restart(trb_integrator *it, trb_message *message)
       memcpy(rates, d->flows[j], TRB_FLOW_SIZE * sizeof *y);
     }
     trb_course_begin(&b->course, it->time, step, y, rates);
-    b->course.wait = TRB_UNTIL_LONGER;
+    b->course.wait = TRB_STEPS_UNTIL_LONGER;
     for (int f = 0; f < d->n_fast && !is_hub; f++) b->together |= d->fast[f].surfaces[j] != 0 && !(trb_fast_gap_left(d, f, j, s->y) > 0.0);
   }
   trb_multirate_list(s);
@@ -236,7 +230,7 @@ static const char *multirate_refuses(const trb_integrator *it)
   if (system->n_moving > 0) return "a ring moves freely";
   for (int b = 0; b < system->n_bodies; b++)
     if (system->bodies[b].modes != NULL) return "the cage deforms";
-  if (system->layout.hub_width != TRB_HUB_USUAL) return "other bodies than a rigid cage have coordinates";
+  if (system->layout.hub_width != TRB_HUB_ONE_BODY) return "other bodies than a rigid cage have coordinates";
   if (d->held != NULL) return "a spacer joins all rollers";
   if (d->spin != NULL) return "surfaces are off their true form";
   if (it->settings.max_order != 2.0) return "max_order is not 2";
@@ -271,7 +265,7 @@ static trb_status multirate_create(trb_integrator *it, trb_message *message)
   s->error = trb_memory_zeros(&s->memory, n, sizeof *s->error);
   s->packed = trb_memory_zeros(&s->memory, s->stride, sizeof *s->packed);
   s->weight = trb_memory_zeros(&s->memory, s->stride, sizeof *s->weight);
-  s->taken = trb_memory_zeros(&s->memory, s->stride * TRB_NEWTON_MOST, sizeof *s->taken);
+  s->taken = trb_memory_zeros(&s->memory, s->stride * TRB_NEWTON_ITERATIONS, sizeof *s->taken);
   if (s->memory.lacks) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the integrator");
   const int  variant = it->members[0].dynamics->work->variant, first = trb_state_roller(system, 0);
   trb_status status = trb_jacobian_create(system, it->members[0].motion, it->variant, &s->jacobian, message);

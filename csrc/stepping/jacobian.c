@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "stepping/constants.h"
 #include "stepping/coupling.h"
 #include "stepping/spacer_blocks.h"
 

@@ -5,13 +5,9 @@
 #include <math.h>
 #include <string.h>
 
-static const double per_l1 = 2.0 / 3.0;
-/* Change of gamma up to which factors are used, as a share. */
-static const double gamma_change = 0.3;
-/* Share of their error by which skew, tilt and the spins that belong to them limit the step of rollers which touch the cage. They swing fast there; at this
- * share forces in pockets are as exact as with one step for all bodies, and no better below 1 (docs/theory/multirate.md#what-limits-a-step). */
-static const double swing_share = 0.5;
-static const int    swings[] = {TRB_ROLLER_skew, TRB_ROLLER_tilt, TRB_ROLLER_omega_n, TRB_ROLLER_omega_t};
+#include "stepping/constants.h"
+
+static const int swings[] = {TRB_ROLLER_skew, TRB_ROLLER_tilt, TRB_ROLLER_omega_n, TRB_ROLLER_omega_t};
 
 /* The larger of two errors; one that is no number stays, whatever follows it. */
 static double larger(double a, double b) { return isnan(a) || b <= a ? a : b; }
@@ -47,7 +43,7 @@ static int wants_slopes(const trb_integrator *it, int roller, double end, int fr
   const trb_multirate *s = it->self;
   const trb_mover     *mover = &s->movers[roller];
   if (mover->slopes_at == end) return 0;
-  return fresh || (mover->poor && mover->solves >= TRB_BETWEEN_RENEWALS) || trb_tangents_are_worn(s->jacobian->tangents, roller) ||
+  return fresh || (mover->poor && mover->solves >= TRB_SOLVES_BETWEEN_RENEWALS) || trb_tangents_are_worn(s->jacobian->tangents, roller) ||
          fabs(end - mover->slopes_at) > it->settings.rings_age ||
          (mover->solves >= TRB_JACOBIAN_EVERY && trb_motion_changes(it->members[0].motion, end - it->settings.rings_age, end));
 }
@@ -94,7 +90,7 @@ static int prepare_hub(trb_integrator *it, const trb_team *team, double end, dou
     }
   }
   s->n_joined = 0;
-  const int other = fabs(gamma / s->factors->gamma - 1.0) > gamma_change || s->factors_age >= TRB_SETUP_EVERY;
+  const int other = fabs(gamma / s->factors->gamma - 1.0) > trb_gamma_change || s->factors_age >= TRB_SETUP_EVERY;
   return fill || !s->has_factors || other ? factor(s, team, gamma, fill) : 1;
 }
 
@@ -109,7 +105,7 @@ static int prepare_alone(trb_integrator *it, int roller, double end, double gamm
     s->factors->held[roller] = 0.0;
   }
   const double held = s->factors->held[roller];
-  if (held > 0.0 && fabs(gamma / held - 1.0) <= gamma_change && mover->age < TRB_SETUP_EVERY) return 1;
+  if (held > 0.0 && fabs(gamma / held - 1.0) <= trb_gamma_change && mover->age < TRB_SETUP_EVERY) return 1;
   for (int c = 0; c < TRB_NR; c++)
     memcpy(s->arrow->rollers[roller].own[c], trb_tangents_column(s->jacobian->tangents, roller, c), TRB_NR * sizeof(double));
   s->count.linear_setups++;
@@ -142,7 +138,7 @@ static double measure(trb_integrator *it, const trb_team *team, double end, doub
   for (int k = 0; k < trb_team_size(team); k++) {
     trb_mover *b = trb_team_mover(s, team, k);
     const int  n = b->course.main;
-    for (int i = 0; i < n; i++) packed[i] = gamma * b->flow[i] - (b->e[i] + per_l1 * b->p[1][i]);
+    for (int i = 0; i < n; i++) packed[i] = gamma * b->flow[i] - (b->e[i] + trb_course_per_l1 * b->p[1][i]);
     b->left = sqrt(trb_weighted_product(n, packed, packed, weight) / n);
     off = larger(off, b->left);
     packed += n, weight += n;
@@ -170,7 +166,7 @@ static void integrate(trb_multirate *s, const trb_team *team, double gamma)
 {
   for (int k = 0; k < trb_team_size(team); k++) {
     trb_mover *b = trb_team_mover(s, team, k);
-    for (int i = b->course.main; i < b->course.n; i++) b->e[i] = gamma * b->flow[i] - per_l1 * b->p[1][i];
+    for (int i = b->course.main; i < b->course.n; i++) b->e[i] = gamma * b->flow[i] - trb_course_per_l1 * b->p[1][i];
   }
 }
 
@@ -178,13 +174,13 @@ static int iterate(trb_integrator *it, const trb_team *team, double end, double 
 {
   trb_multirate *s = it->self;
   const int      size = team->n * TRB_NR + (team->with_hub ? s->movers[s->n_rollers].course.main : 0);
-  double         first = INFINITY, before = 0.0, square[TRB_NEWTON_MOST];
+  double         first = INFINITY, before = 0.0, square[TRB_NEWTON_ITERATIONS];
   for (int k = 0; k < trb_team_size(team); k++) memset(trb_team_mover(s, team, k)->e, 0, TRB_NP * sizeof(double));
-  for (int m = 0; m < TRB_NEWTON_MOST; m++) {
+  for (int m = 0; m < TRB_NEWTON_ITERATIONS; m++) {
     const double off = measure(it, team, end, gamma, exact);
     if (!isfinite(off)) return 0;
-    for (int k = 0; k < team->n && m == 1 && off > trb_poor * before && off > trb_negligible * tolerance; k++)
-      s->movers[team->rollers[k]].poor |= s->movers[team->rollers[k]].left > 0.5 * trb_poor * before;
+    for (int k = 0; k < team->n && m == 1 && off > trb_poor_share * before && off > trb_newton_negligible * tolerance; k++)
+      s->movers[team->rollers[k]].poor |= s->movers[team->rollers[k]].left > trb_poor_body_share * trb_poor_share * before;
     solve(s, team);
     trb_newton_improve(m, size, s->weight, s->packed, s->taken, s->stride, square);
     s->count.nonlinear_iterations++;
@@ -195,7 +191,7 @@ static int iterate(trb_integrator *it, const trb_team *team, double end, double 
     }
     before = off;
     if (m == 0) first = change;
-    if (!(change <= trb_divergence * first) || !(square[m] > 0.0)) return 0;
+    if (!(change <= trb_newton_divergence * first) || !(square[m] > 0.0)) return 0;
   }
   return 0;
 }
@@ -223,7 +219,7 @@ static double error_of(trb_multirate *s, const trb_team *team, double per)
     const int  n = b->course.main;
     double     e[TRB_COURSE_ROOM];
     memcpy(e, b->e, (size_t)n * sizeof *e);
-    for (size_t i = 0; i < sizeof swings / sizeof *swings && team->with_hub && k < team->n; i++) e[swings[i]] *= swing_share;
+    for (size_t i = 0; i < sizeof swings / sizeof *swings && team->with_hub && k < team->n; i++) e[swings[i]] *= trb_swing_share;
     largest = larger(largest, per * sqrt(trb_weighted_product(n, e, e, weight) / n));
     for (int i = n; i < b->course.n; i++) largest += 0.0 * b->e[i]; /* an integral that is no number any more */
     for (int i = 0; i < n; i++) s->error[b->first + i] = per * b->e[i];
@@ -243,7 +239,7 @@ trb_outcome trb_multirate_try(trb_integrator *it, const trb_team *team, double e
     trb_mover *b = trb_team_mover(s, team, k);
     trb_course_predict(&b->course, b->p);
     failing = fmax(failing, b->failing);
-    troubled |= b->troubled || b->failing > trb_sometimes;
+    troubled |= b->troubled || b->failing > trb_failing_sometimes;
   }
   weigh(it, team);
   for (int fresh = 0; fresh < 2 && !solved; fresh++) {
@@ -253,7 +249,7 @@ trb_outcome trb_multirate_try(trb_integrator *it, const trb_team *team, double e
   }
   for (int k = 0; k < trb_team_size(team); k++) {
     trb_mover *b = trb_team_mover(s, team, k);
-    b->failing += trb_present * (!solved - b->failing);
+    b->failing += trb_newest_solve_weight * (!solved - b->failing);
     b->troubled = !solved;
     b->solves++;
   }

@@ -55,9 +55,6 @@ typedef struct trb_team {
   int        n, with_hub;
 } trb_team;
 
-/* Steps of a length until the next may be longer. */
-enum { TRB_UNTIL_LONGER = 3 };
-
 typedef enum trb_outcome { TRB_STEP_GOOD, TRB_STEP_UNSOLVED, TRB_STEP_WRONG } trb_outcome;
 
 static inline int        trb_team_size(const trb_team *team) { return team->n + team->with_hub; }

@@ -2,11 +2,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "stepping/constants.h"
 #include "stepping/multirate.h"
 #include "motion/fast_pairs.h"
-
-/* Steps in which a roller of the hub's team has touched nothing until it leaves. */
-enum { UNTIL_LEAVES = 30 };
 
 void trb_multirate_list(trb_multirate *s)
 {
@@ -78,12 +76,12 @@ void trb_multirate_leave(trb_integrator *it)
     int        clear = 1;
     for (int f = 0; f < d->n_fast && clear; f++) clear = d->fast[f].surfaces[j] == 0 || trb_fast_gap_left(d, f, j, it->y) > 0.0;
     b->quiet = clear ? b->quiet + 1 : 0;
-    if (b->quiet < UNTIL_LEAVES) continue;
+    if (b->quiet < TRB_STEPS_UNTIL_LEAVES) continue;
     b->together = 0;
     /* as it has touched nothing since the Jacobian was filled, the other ones' system stays as it is */
     if (s->factors->borders[j].parts != 0U || s->arrow->borders[j].parts != 0U) s->has_factors = 0, s->factors->held[j] = 0.0;
     b->age = 0;
-    b->course.wait = TRB_UNTIL_LONGER;
+    b->course.wait = TRB_STEPS_UNTIL_LONGER;
     n++;
   }
   if (n > 0) trb_multirate_list(s);

@@ -12,16 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "stepping/constants.h"
 #include "stepping/newton_rules.h"
 #include "stepping/sundials_context.h"
-
-/* Share of solves that fail above which bodies are taken one by one: not in the course of an impact, whose few failures are well answered by a
- * shorter step. */
-static const double often = 0.3;
-/* How often slopes are then taken again within a solve, at most. */
-enum { most_renewals = 8 };
-/* Where that was in vain it is left out for one failed solve, then for twice as many each time, at most for so many. */
-enum { longest_pause = 64 };
 
 typedef struct newton {
   SUNNonlinSolSysFn    residual;
@@ -74,7 +67,7 @@ static double improve_all(newton *self, int m, int one_by_one, const double *wei
   }
   double sum = 0.0;
   for (int body = 0; body <= self->n_bodies; body++) {
-    double *const square = self->square + (size_t)body * TRB_NEWTON_MOST;
+    double *const square = self->square + (size_t)body * TRB_NEWTON_ITERATIONS;
     const part    of = part_of(self, body);
     trb_newton_improve(m, of.n, weight + of.from, delta + of.from, self->taken + of.from, (size_t)self->n, square);
     sum += square[m];
@@ -108,7 +101,7 @@ static void measure(newton *self, const double *lack, const double *weight)
  * others together leave less than half of what is too much. */
 static void choose_poor(newton *self, double too_much, int solves)
 {
-  const double limit = 0.5 * too_much;
+  const double limit = trb_poor_body_share * too_much;
   self->is_poor = 0;
   for (int body = 0; body <= self->n_bodies; body++) {
     self->poor[body] = self->left[body] * (self->n_bodies + 1) > limit * limit * self->n && self->solves - self->renewed[body] >= solves;
@@ -134,7 +127,7 @@ static int iterate(newton *self, N_Vector correction, N_Vector weights, double t
     for (int body = 0; body <= self->n_bodies; body++) self->best_square[body] = (double)INFINITY;
     memcpy(self->best, N_VGetArrayPointer(correction), (size_t)self->n * sizeof *self->best);
   }
-  for (int m = 0; m < TRB_NEWTON_MOST; m++) {
+  for (int m = 0; m < TRB_NEWTON_ITERATIONS; m++) {
     if (m > 0) {
       const int flag = self->residual(correction, self->delta, memory);
       if (flag != 0) return flag;
@@ -143,8 +136,8 @@ static int iterate(newton *self, N_Vector correction, N_Vector weights, double t
     const double *const weight = N_VGetArrayPointer(weights);
     /* what the equations lack, in the mean over all entries */
     const double off = sqrt(trb_weighted_product(self->n, delta, delta, weight) / self->n);
-    if (m > 1 || (m == 1 && off > trb_poor * before)) measure(self, delta, weight);
-    if (m == 1 && off > trb_poor * before) choose_poor(self, trb_poor * before, TRB_BETWEEN_RENEWALS);
+    if (m > 1 || (m == 1 && off > trb_poor_share * before)) measure(self, delta, weight);
+    if (m == 1 && off > trb_poor_share * before) choose_poor(self, trb_poor_share * before, TRB_SOLVES_BETWEEN_RENEWALS);
     if (one_by_one && m > 0) remember(self, N_VGetArrayPointer(correction), delta, weight);
     for (int i = 0; i < self->n; i++) delta[i] = -delta[i];
     const int flag = self->solve(self->delta, memory);
@@ -155,7 +148,7 @@ static int iterate(newton *self, N_Vector correction, N_Vector weights, double t
     if (change <= tolerance && trb_newton_holds(self->failing, off, before, tolerance)) return 0;
     self->off = before = off;
     if (m == 0) first = change;
-    if (!(change <= trb_divergence * first) || !(square > 0.0)) return SUN_NLS_CONV_RECVR;
+    if (!(change <= trb_newton_divergence * first) || !(square > 0.0)) return SUN_NLS_CONV_RECVR;
   }
   return SUN_NLS_CONV_RECVR;
 }
@@ -165,7 +158,7 @@ static int renew(newton *self, N_Vector correction, N_Vector weights, double tol
 {
   int current = 0, flag = SUN_NLS_CONV_RECVR;
   self->renewing = 1;
-  for (int i = 0, going = 1; i < most_renewals && going; i++) {
+  for (int i = 0, going = 1; i < TRB_MOST_RENEWALS && going; i++) {
     memcpy(N_VGetArrayPointer(correction), self->best, (size_t)self->n * sizeof *self->best);
     flag = self->residual(correction, self->delta, memory);
     if (flag == 0) flag = self->setup(1, &current, memory);
@@ -186,7 +179,7 @@ static int solve(SUNNonlinearSolver solver, N_Vector start, N_Vector correction,
   self->iterations = self->failures = 0;
   self->solves++;
   for (;;) {
-    const int one_by_one = self->failing > often;
+    const int one_by_one = self->failing > trb_failing_often;
     int       flag = self->residual(correction, self->delta, memory);
     if (flag != 0) return flag;
     if (setup || bad || self->is_poor) {
@@ -198,9 +191,9 @@ static int solve(SUNNonlinearSolver solver, N_Vector start, N_Vector correction,
     if (flag > 0 && one_by_one && current && self->paused++ >= self->pause) {
       flag = renew(self, correction, weights, tolerance, memory);
       self->paused = 0;
-      self->pause = flag == 0 ? 0 : self->pause == 0 ? 1 : 2 * self->pause < longest_pause ? 2 * self->pause : longest_pause;
+      self->pause = flag == 0 ? 0 : self->pause == 0 ? 1 : 2 * self->pause < TRB_LONGEST_PAUSE ? 2 * self->pause : TRB_LONGEST_PAUSE;
     }
-    if (flag >= 0) self->failing += trb_present * ((flag > 0) - self->failing);
+    if (flag >= 0) self->failing += trb_newest_solve_weight * ((flag > 0) - self->failing);
     if (flag == 0) self->troubled = 0;
     if (flag <= 0) return flag;
     self->failures++;
@@ -259,7 +252,7 @@ static int get_failures(SUNNonlinearSolver solver, long *n)
 int trb_newton_troubled(SUNNonlinearSolver solver)
 {
   const newton *self = solver->content;
-  return self->troubled || self->failing > trb_sometimes;
+  return self->troubled || self->failing > trb_failing_sometimes;
 }
 
 int trb_newton_renewing(SUNNonlinearSolver solver)
@@ -298,8 +291,8 @@ SUNNonlinearSolver trb_newton_solver(N_Vector like, int n_main, int n_bodies, in
     self->n_bodies = n_bodies;
     self->size = size;
     const size_t n = (size_t)self->n, bodies = (size_t)n_bodies + 1;
-    self->taken = trb_memory_zeros(&self->memory, n * TRB_NEWTON_MOST, sizeof(double));
-    self->square = trb_memory_zeros(&self->memory, bodies * TRB_NEWTON_MOST, sizeof(double));
+    self->taken = trb_memory_zeros(&self->memory, n * TRB_NEWTON_ITERATIONS, sizeof(double));
+    self->square = trb_memory_zeros(&self->memory, bodies * TRB_NEWTON_ITERATIONS, sizeof(double));
     self->best = trb_memory_zeros(&self->memory, n, sizeof(double));
     self->best_square = trb_memory_zeros(&self->memory, bodies, sizeof(double));
     self->left = trb_memory_zeros(&self->memory, bodies, sizeof *self->left);

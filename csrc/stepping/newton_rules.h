@@ -5,23 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { TRB_NEWTON_MOST = 6 }; /* iterations at most */
-
-/* Largest share of the last correction that the next one may repeat before it is prolonged no further: by 1/(1 - most_kept) at most. */
-static const double trb_most_kept = 0.95;
-/* What the equations lack is accepted below the first share of the tolerance; else it must also have fallen to the second share by a
- * correction. */
-static const double trb_negligible = 0.04, trb_contraction = 0.3;
-/* Slopes are taken again where a first correction leaves more than this share, of a body after so many solves at least. */
-static const double trb_poor = 0.2;
-enum { TRB_BETWEEN_RENEWALS = 20 };
-/* A correction that grows beyond this multiple of the first one diverges. */
-static const double trb_divergence = 1e3;
-/* Weight of the present solve in the share of solves that fail. */
-static const double trb_present = 0.03;
-/* Share of solves that fail above which the equations must hold to a share of the tolerance in any case. Where friction is that steep, what
- * a step lacks within the tolerance is a force that makes as much energy as the bearing loses. */
-static const double trb_sometimes = 0.1, trb_tiny = 0.004;
+#include "stepping/constants.h"
 
 /* Weighted product of two vectors. Eight sums side by side: one alone would wait for each of its additions. */
 static inline double trb_weighted_product(int n, const double *a, const double *b, const double *weight)
@@ -37,8 +21,8 @@ static inline double trb_weighted_product(int n, const double *a, const double *
 /* Whether equations hold well enough: what they lack, and what they lacked before the last correction; failing: the share of solves that fail. */
 static inline int trb_newton_holds(double failing, double off, double before, double tolerance)
 {
-  if (failing > trb_sometimes) return off <= trb_tiny * tolerance;
-  return off <= trb_negligible * tolerance || (off <= tolerance && off <= trb_contraction * before);
+  if (failing > trb_failing_sometimes) return off <= trb_newton_close * tolerance;
+  return off <= trb_newton_negligible * tolerance || (off <= tolerance && off <= trb_newton_contraction * before);
 }
 
 /* Turns n entries of the plain correction into those of Broyden's method and stores them; m: number of corrections that were taken before, which are
@@ -54,7 +38,7 @@ static inline void trb_newton_improve(int m, int n, const double *weight, double
       const double *next = s + stride;
       for (int i = 0; i < n; i++) delta[i] += kept * next[i];
     } else {
-      const double scale = 1.0 / (1.0 - fmin(kept, trb_most_kept));
+      const double scale = 1.0 / (1.0 - fmin(kept, trb_broyden_most_kept));
       for (int i = 0; i < n; i++) delta[i] *= scale;
     }
   }

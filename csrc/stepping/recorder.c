@@ -12,9 +12,7 @@
 
 #include "base/thread.h"
 #include "motion/fast_pairs.h"
-
-/* Places of the queue; how many of them are filled, or free again, before a thread that waits is woken. */
-enum { PLACES = 128, ENOUGH = 32, FREE = 64 };
+#include "stepping/constants.h"
 
 /* A state in the queue. */
 typedef struct place {
@@ -28,7 +26,7 @@ struct trb_recorder {
   const trb_record_parts *parts; /* of n bearings */
   int                     n;
   size_t                  n_state;
-  place                   queue[PLACES];
+  place                   queue[TRB_QUEUE_PLACES];
   atomic_ulong            put, taken;    /* states put into the queue, and computed, since the beginning */
   atomic_int              idle, held_up; /* whether the second thread waits for work, and the stepping for room */
   int                     closing;
@@ -80,7 +78,7 @@ static void wake(trb_recorder *r, atomic_int *waits, trb_condition *condition)
 static int wait_for_work(trb_recorder *r)
 {
   trb_lock_take(&r->lock);
-  for (r->idle = 1; filled(r) < ENOUGH && !r->closing; r->idle = 1) trb_condition_wait(&r->has_work, &r->lock);
+  for (r->idle = 1; filled(r) < TRB_QUEUE_ENOUGH && !r->closing; r->idle = 1) trb_condition_wait(&r->has_work, &r->lock);
   r->idle = 0;
   const int more = filled(r) > 0 || !r->closing;
   trb_lock_give(&r->lock);
@@ -90,7 +88,7 @@ static int wait_for_work(trb_recorder *r)
 static void wait_for_room(trb_recorder *r)
 {
   trb_lock_take(&r->lock);
-  for (r->held_up = 1; filled(r) > PLACES - FREE; r->held_up = 1) trb_condition_wait(&r->has_room, &r->lock);
+  for (r->held_up = 1; filled(r) > TRB_QUEUE_PLACES - TRB_QUEUE_FREE; r->held_up = 1) trb_condition_wait(&r->has_room, &r->lock);
   r->held_up = 0;
   trb_lock_give(&r->lock);
 }
@@ -100,9 +98,9 @@ TRB_THREAD_WORK(work, recorder)
   trb_recorder *r = recorder;
   while (wait_for_work(r)) {
     while (filled(r) > 0) {
-      compute(r, &r->queue[r->taken % PLACES]);
+      compute(r, &r->queue[r->taken % TRB_QUEUE_PLACES]);
       r->taken++;
-      if (r->held_up && filled(r) <= PLACES - FREE) wake(r, &r->held_up, &r->has_room);
+      if (r->held_up && filled(r) <= TRB_QUEUE_PLACES - TRB_QUEUE_FREE) wake(r, &r->held_up, &r->has_room);
     }
   }
   return 0;
@@ -111,14 +109,14 @@ TRB_THREAD_WORK(work, recorder)
 /* The next place, once it is free. */
 static place *reserve(trb_recorder *r)
 {
-  if (filled(r) == PLACES) wait_for_room(r);
-  return &r->queue[r->put % PLACES];
+  if (filled(r) == TRB_QUEUE_PLACES) wait_for_room(r);
+  return &r->queue[r->put % TRB_QUEUE_PLACES];
 }
 
 static void hand_over(trb_recorder *r)
 {
   r->put++;
-  if (r->idle && filled(r) >= ENOUGH) wake(r, &r->idle, &r->has_work);
+  if (r->idle && filled(r) >= TRB_QUEUE_ENOUGH) wake(r, &r->idle, &r->has_work);
 }
 
 void trb_recorder_put(trb_recorder *r, double time, const double *y, double *row)
@@ -147,7 +145,7 @@ trb_recorder *trb_recorder_open(const trb_record_parts *parts, int n, int n_stat
   r->parts = parts;
   r->n = n;
   r->n_state = (size_t)n_state;
-  for (int i = 0; i < PLACES; i++) {
+  for (int i = 0; i < TRB_QUEUE_PLACES; i++) {
     r->queue[i].y = trb_memory_zeros(&r->memory, r->n_state, sizeof(double));
     r->queue[i].apart = trb_memory_zeros(&r->memory, (size_t)parts[0].onlooker->system->layout.n_rollers, sizeof(unsigned));
   }

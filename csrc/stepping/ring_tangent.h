@@ -16,7 +16,7 @@ typedef struct trb_ring_slopes {
 
 typedef struct trb_ring_tangent {
   trb_ring_slopes slopes;              /* with Broyden's corrections */
-  trb_ring_slopes found;               /* as differences gave them */
+  trb_ring_slopes by_differences;      /* as differences gave them */
   double          value[TRB_RING_OUT]; /* reaction at the origin */
   double          origin[TRB_RING_IN]; /* inputs there */
   double          per[TRB_RING_IN];    /* weights of a distance */

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "stepping/constants.h"
 #include "stepping/vectors.h"
 #include "motion/fast_pairs.h"
 #include "motion/spacer.h"
@@ -45,7 +46,7 @@ static trb_status check_bearing(const trb_system *system, const double *state, t
   const trb_model *m = system->model;
   for (int j = 0; j < m->n_rollers; j++) {
     const double *y = state + trb_state_roller(system, j);
-    if (!(m->geometry.roller_centre_radius + y[TRB_ROLLER_r] > 0.0) || fabs(y[TRB_ROLLER_skew]) > 1.5)
+    if (!(m->geometry.roller_centre_radius + y[TRB_ROLLER_r] > 0.0) || fabs(y[TRB_ROLLER_skew]) > trb_most_skew)
       return trb_fail(message, TRB_ERR_STATE, "roller %d: r = %g m, skew = %g rad: beyond what the coordinates hold", j, y[TRB_ROLLER_r],
                       y[TRB_ROLLER_skew]);
   }
@@ -53,7 +54,8 @@ static trb_status check_bearing(const trb_system *system, const double *state, t
     const trb_body *body = &system->bodies[b];
     if (body->size == 0 || body->kind->skew < 0) continue;
     const double skew = state[body->first + body->kind->skew];
-    if (fabs(skew) > 1.5) return trb_fail(message, TRB_ERR_STATE, "%s: skew = %g rad: beyond what the coordinates hold", body->name, skew);
+    if (fabs(skew) > trb_most_skew)
+      return trb_fail(message, TRB_ERR_STATE, "%s: skew = %g rad: beyond what the coordinates hold", body->name, skew);
   }
   return TRB_OK;
 }

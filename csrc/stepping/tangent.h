@@ -21,7 +21,7 @@ _Static_assert(TRB_TANGENT_IN == TRB_NR + 1, "room for a roller's state and an a
 
 typedef struct trb_tangent {
   double slope[TRB_TANGENT_IN][TRB_TANGENT_OUT]; /* column by column, with Broyden's corrections */
-  double found[TRB_NR][TRB_NR];                  /* slopes of the rates as differences gave them, column by column */
+  double by_differences[TRB_NR][TRB_NR];         /* slopes of the rates as differences gave them, column by column */
   double value[TRB_TANGENT_OUT];                 /* flow at the origin */
   double origin[TRB_TANGENT_IN];                 /* where it is exact */
   double per[TRB_TANGENT_IN];    /* weights of a distance: one over tolerance, scaled so that the sum of squares is a mean */
@@ -31,9 +31,9 @@ typedef struct trb_tangent {
   double length;                 /* of the last step between origins; 0: slopes were found at the origin */
   double reach;                  /* distance up to which it is used */
   double margin[TRB_MOST_PAIRS]; /* of the contacts at the origin, m */
-  double usual;                  /* for how many evaluations an origin is used: running mean */
-  int    served;                 /* for how many this one was */
-  int    known;                  /* 0: there is no origin */
+  double mean_uses;              /* for how many evaluations an origin is used: running mean */
+  int    uses;                   /* for how many this one was */
+  int    has_origin;             /* 0: there is no origin */
   int    corrected;              /* how often its slopes were corrected since they were computed by differences */
 } trb_tangent;
 
@@ -41,15 +41,15 @@ typedef struct trb_tangents {
   const trb_model  *model;
   const trb_system *system;
   trb_tangent      *rollers;
-  trb_ring_tangent *rings;                                    /* of every roller, one for each ring with coordinates */
-  trb_ring_pose    *seen;                                     /* scratch: those rings as each roller sees them */
-  double (*partly)[TRB_FLOW_ROOM];                            /* scratch: flows of every roller under the contacts with one ring alone */
-  double least_mass;                                          /* of these rings, for one roller, kg */
-  double least[TRB_TANGENT_OUT], anything[TRB_TANGENT_OUT];   /* lower bounds of a flow that follows a tangent; no bounds */
-  const struct trb_tangent_measure *measure;                  /* of the evaluation under way */
-  int                               under_way;                /* the prescribed motion is: everything is exact */
+  trb_ring_tangent *rings;                    /* of every roller, one for each ring with coordinates */
+  trb_ring_pose    *seen;                     /* scratch: those rings as each roller sees them */
+  double (*flows_of_one_ring)[TRB_FLOW_ROOM]; /* scratch: flows of every roller under the contacts with one ring alone */
+  double least_mass;                          /* of these rings, for one roller, kg */
+  double lower_bound[TRB_TANGENT_OUT], no_bound[TRB_TANGENT_OUT]; /* lower bounds of a flow that follows a tangent; no bounds */
+  const struct trb_tangent_measure *measure;                      /* of the evaluation under way */
+  int                               under_way;                    /* the prescribed motion is: everything is exact */
   double                            slip;                     /* by which a roller may slip away from its origin in this evaluation, m/s */
-  int                              *beyond;                   /* scratch: whether a bound of the tangent is passed */
+  int                              *out_of_bounds;            /* scratch: whether a bound of the tangent is passed */
   trb_ring_offset                   offsets[TRB_MOST_BODIES]; /* of the rings, in this evaluation */
   double                            inputs[TRB_MOST_MOVING_RINGS][TRB_RING_IN]; /* of those with coordinates, in this evaluation */
   trb_ring_arms                     arms;                                       /* what bounds the change of an interference */
@@ -68,17 +68,11 @@ typedef struct trb_tangent_measure {
   double                   slip_share;   /* of the mean rolling speed that a roller may slip away */
 } trb_tangent_measure;
 
-static const double trb_margin_share = 0.5, trb_slip_share = 3e-3; /* as integrators have them */
-
 /* Weight of a coordinate in a distance, one over its tolerance; like: a roller's coordinate of the same kind. */
 static inline double trb_tangent_weight(const trb_tangent_measure *measure, int like, double value)
 {
   return 1.0 / (sqrt((double)TRB_NR) * (measure->relative[like] * fabs(value) + measure->scale[like]));
 }
-
-/* Steps of the differences, by kind of entry: small beside the scale on which the laws curve (micrometres of interference, a slip of 1e-4)
- * and large beside rounding. */
-static const double trb_difference[TRB_N_TOLERANCES] = {1e-10, 1e-8, 1e-7, 1e-5, 1.0};
 
 trb_status trb_tangents_create(const trb_system *system, trb_tangents **tangents, trb_message *message);
 void       trb_tangents_free(trb_tangents *tangents);

@@ -2,20 +2,7 @@
 
 #include <string.h>
 
-/* Turn of the frame R that counts as one tolerance, rad. */
-static const double turn_unit = 1e-3;
-/* Weight of the last origin in the mean of how many evaluations use an origin. */
-static const double newest = 0.2;
-/* Error that a tangent may have in its powers, as a share of all power. */
-static const double power_share = 0.03;
-/* Reach: smallest and largest value; largest growth and decline in one change; factor of caution; distance beyond which the
- * slopes are not corrected. */
-static const double least_reach = 1e-3, largest_reach = 1e3, growth = 3.0, decline = 0.05, caution = 0.8, farthest = 1e5;
-/* Steps between origins that go on one way, or back: least cosine of the angle between them, in the metric of the tolerances; largest ratio of
- * lengths of steps that go on evenly. */
-static const double least_cosine = 0.9, most_uneven = 3.0;
-/* The same of a reach where the tangent bends: what a bend promises holds near the origins between which it was seen. */
-static const double bent_growth = 1.2, bent_caution = 0.7;
+#include "stepping/constants.h"
 
 /* No bend is known, as slopes were found at the origin. */
 void trb_tangent_straighten(trb_tangents *t, int roller)
@@ -35,7 +22,7 @@ void trb_tangent_straighten(trb_tangents *t, int roller)
 static void weigh(trb_tangent *r, const trb_tangent_measure *measure, const double *y)
 {
   for (int i = 0; i < TRB_NR; i++) r->per[i] = trb_tangent_weight(measure, i, y[i]);
-  r->per[TRB_TANGENT_TURN] = 1.0 / turn_unit;
+  r->per[TRB_TANGENT_TURN] = 1.0 / trb_turn_tolerance;
 }
 
 /* Error of a step, in tolerances, that follows from an error in the rates: gamma times it, the measure of the test of Newton's method
@@ -56,7 +43,7 @@ static double power_error(const double *flow, const double *error)
     off += fabs(error[i]);
     all += fabs(flow[i]);
   }
-  return off / (all + 1e-300);
+  return off / (all + trb_above_zero);
 }
 
 /* The bend along the last step, of the length given: its direction, how its flow and reactions differ from the slopes, and whether it goes on
@@ -67,7 +54,7 @@ static void bend(trb_tangents *t, int roller, double length, int same_way, const
                  double (*of_ring)[TRB_RING_IN], double (*off)[TRB_RING_OUT])
 {
   trb_tangent *r = &t->rollers[roller];
-  const int    even = length < most_uneven * r->length && r->length < most_uneven * length;
+  const int    even = length < trb_even_steps_ratio * r->length && r->length < trb_even_steps_ratio * length;
   r->bends = r->length == 0.0 || (same_way && even);
   const double share = r->bends ? length / (length + r->length) : 0.0;
   for (int i = 0; i < TRB_TANGENT_OUT; i++) r->curve[i] = share * error[i];
@@ -87,28 +74,28 @@ static double over_allowed(const trb_tangents *t, int roller, const trb_tangent_
   double in_state = step_error(&t->rollers[roller], measure, error);
   for (int k = 0; k < t->system->n_moving; k++)
     in_state = trb_max(in_state, trb_rings_error(t, trb_tangents_ring_of(t, roller, k), measure, off[k]));
-  return trb_max(in_state / measure->share, power_error(flow, error) / power_share);
+  return trb_max(in_state / measure->share, power_error(flow, error) / trb_power_share);
 }
 
 /* Errors over those allowed: of the slopes alone, and of the prediction, which bends. */
-typedef struct trb_found {
+typedef struct tangent_errors {
   double straight, bent;
-} trb_found;
+} tangent_errors;
 
 /* How an exact flow and the exact reactions differ from the slopes. */
-static trb_found compare(const trb_tangents *t, int roller, const trb_tangent_measure *measure, const double *flow,
-                         const trb_wrench *reactions, const double *step, double (*of_ring)[TRB_RING_IN], double *error,
-                         double (*off)[TRB_RING_OUT])
+static tangent_errors compare(const trb_tangents *t, int roller, const trb_tangent_measure *measure, const double *flow,
+                              const trb_wrench *reactions, const double *step, double (*of_ring)[TRB_RING_IN], double *error,
+                              double (*off)[TRB_RING_OUT])
 {
   const trb_tangent       *r = &t->rollers[roller];
   const trb_block_kernels *kernels = measure->kernels;
   const double             by = trb_tangent_bend(trb_tangent_share(t, roller, step, of_ring));
   double                   left[TRB_TANGENT_OUT], left_off[TRB_MOST_MOVING_RINGS][TRB_RING_OUT];
-  kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, r->curve, 0.0, t->anything, error);
+  kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, r->curve, 0.0, t->no_bound, error);
   for (int k = 0; k < t->system->n_moving; k++) {
     const trb_ring_tangent *ring = trb_tangents_ring_of(t, roller, k);
     double                  exact[TRB_RING_OUT];
-    kernels->follow_ring(&ring->slopes, ring->value, step, of_ring[k], t->anything, error, off[k]);
+    kernels->follow_ring(&ring->slopes, ring->value, step, of_ring[k], t->no_bound, error, off[k]);
     trb_ring_reaction(&reactions[k], exact);
     for (int i = 0; i < TRB_RING_OUT; i++) {
       off[k][i] = exact[i] - off[k][i];
@@ -119,7 +106,7 @@ static trb_found compare(const trb_tangents *t, int roller, const trb_tangent_me
     error[i] = flow[i] - error[i];
     left[i] = error[i] - by * r->curve[i];
   }
-  return (trb_found){over_allowed(t, roller, measure, flow, error, off), over_allowed(t, roller, measure, flow, left, left_off)};
+  return (tangent_errors){over_allowed(t, roller, measure, flow, error, off), over_allowed(t, roller, measure, flow, left, left_off)};
 }
 
 /* An exact flow becomes the origin. With s the step from the old origin, P the diagonal matrix of weights and e = flow - prediction by the
@@ -136,18 +123,20 @@ void trb_tangent_learn(trb_tangents *t, const trb_dynamics *d, int roller, const
   const trb_block_kernels   *kernels = measure->kernels;
   double                     step[TRB_TANGENT_IN], error[TRB_TANGENT_OUT];
   if (!kernels->finite(flow, TRB_FLOW_SIZE)) return;
-  const double by_rings = r->known ? trb_rings_step(t, roller, of_ring) : 0.0;
-  const double length = r->known ? sqrt(kernels->step_from(r->origin, r->per, y, turn, step) + by_rings) : 0.0;
-  if (r->known && length > 0.0 && length < farthest) {
-    double          direction[TRB_TANGENT_IN];
-    const trb_found found = compare(t, roller, measure, flow, reactions, step, of_ring, error, off);
+  const double by_rings = r->has_origin ? trb_rings_step(t, roller, of_ring) : 0.0;
+  const double length = r->has_origin ? sqrt(kernels->step_from(r->origin, r->per, y, turn, step) + by_rings) : 0.0;
+  if (r->has_origin && length > 0.0 && length < trb_farthest_correction) {
+    double               direction[TRB_TANGENT_IN];
+    const tangent_errors errors = compare(t, roller, measure, flow, reactions, step, of_ring, error, off);
     /* going back to the origin before, the prediction is right there whatever it is worth elsewhere */
-    const double way = trb_tangent_share(t, roller, step, of_ring) * r->length / length, most = way < -least_cosine ? 1.0 : growth;
-    const double straight = trb_clamp(caution / sqrt(found.straight + 1e-300), decline, most);
-    const double bent = trb_clamp(bent_caution / sqrt(found.bent + 1e-300), decline, trb_min(most, bent_growth));
-    const int    pays = r->bends ? bent > straight : straight < bent_growth;
-    const int    same_way = pays && way > least_cosine;
-    r->reach = trb_clamp(length * trb_max(straight, bent), least_reach, largest_reach);
+    const double way = trb_tangent_share(t, roller, step, of_ring) * r->length / length;
+    const double most = way < -trb_same_way_cosine ? 1.0 : trb_reach_growth;
+    const double straight = trb_clamp(trb_reach_caution / sqrt(errors.straight + trb_above_zero), trb_reach_decline, most);
+    const double bent =
+        trb_clamp(trb_bent_reach_caution / sqrt(errors.bent + trb_above_zero), trb_reach_decline, trb_min(most, trb_bent_reach_growth));
+    const int pays = r->bends ? bent > straight : straight < trb_bent_reach_growth;
+    const int same_way = pays && way > trb_same_way_cosine;
+    r->reach = trb_clamp(length * trb_max(straight, bent), trb_least_reach, trb_largest_reach);
     for (int c = 0; c < TRB_TANGENT_IN; c++) direction[c] = step[c] * r->per[c] * r->per[c] / (length * length);
     for (int c = 0; c < TRB_TANGENT_IN; c++)
       for (int i = 0; i < TRB_TANGENT_OUT; i++) r->slope[c][i] += error[i] * direction[c];
@@ -167,8 +156,8 @@ void trb_tangent_learn(trb_tangents *t, const trb_dynamics *d, int roller, const
   r->origin[TRB_TANGENT_TURN] = turn;
   weigh(r, measure, y);
   trb_rings_move_origin(t, d, roller, measure, reactions);
-  r->usual += newest * (r->served - r->usual);
-  r->served = 0;
-  r->known = 1;
+  r->mean_uses += trb_newest_origin_weight * (r->uses - r->mean_uses);
+  r->uses = 0;
+  r->has_origin = 1;
   r->corrected++;
 }

@@ -7,9 +7,6 @@
 
 _Static_assert(TRB_TANGENT_IN % 4 == 0, "sums of four");
 
-/* Reach of a tangent of which nothing is known but its slopes. */
-static const double trb_first_reach = 1.0;
-
 /* No bend is known, as slopes were found at the origin. */
 void trb_tangent_straighten(trb_tangents *t, int roller);
 /* An exact flow of a roller, with the reactions on the rings, at a state whose margins the dynamics have. */

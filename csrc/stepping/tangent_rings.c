@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "stepping/constants.h"
+
 enum { CENTRE = 0, AXIS = 3, VELOCITY = 5, OMEGA = 8 };
 
 /* A roller's coordinate of the same kind as an input of a ring, which has its tolerance. */
@@ -94,7 +96,7 @@ void trb_rings_differentiate(trb_tangents *t, trb_dynamics *d, const int *chosen
   for (int k = 0; k < t->system->n_moving; k++) {
     const int body = t->system->moving[k];
     trb_dynamics_slow(d, &at, body, NULL);
-    for (int i = 0; i < n; i++) trb_dynamics_roller_flow(d, chosen[i], &d->loads[chosen[i]], t->partly[chosen[i]]);
+    for (int i = 0; i < n; i++) trb_dynamics_roller_flow(d, chosen[i], &d->loads[chosen[i]], t->flows_of_one_ring[chosen[i]]);
     for (int c = 0; c < TRB_RING_IN; c++) {
       const double h = trb_difference[trb_roller_coordinates[like(c)].tolerance], per = 1.0 / h;
       for (int i = 0; i < n; i++) {
@@ -107,14 +109,14 @@ void trb_rings_differentiate(trb_tangents *t, trb_dynamics *d, const int *chosen
         trb_ring_tangent *ring = trb_tangents_ring_of(t, j, k);
         double            flow[TRB_FLOW_SIZE];
         trb_dynamics_roller_flow(d, j, &d->loads[j], flow);
-        for (int i = 0; i < TRB_FLOW_SIZE; i++) ring->slopes.flow[c][i] = per * (flow[i] - t->partly[j][i]);
+        for (int i = 0; i < TRB_FLOW_SIZE; i++) ring->slopes.flow[c][i] = per * (flow[i] - t->flows_of_one_ring[j][i]);
         trb_rings_differentiate_reactions(t, d, j, TRB_TANGENT_IN + c, per, k);
       }
       trb_rings_see(t, d, 1);
     }
     for (int i = 0; i < n; i++) {
       trb_ring_tangent *ring = trb_tangents_ring_of(t, chosen[i], k);
-      ring->found = ring->slopes;
+      ring->by_differences = ring->slopes;
     }
   }
 }

@@ -1,3 +1,4 @@
+#include "stepping/constants.h"
 #include "stepping/tangent.h"
 
 #include <math.h>
@@ -6,24 +7,15 @@
 
 #include "stepping/tangent_learn.h"
 
-/* Turn of the frame R by which slopes over it are computed, rad. */
-static const double turn_difference = 1e-5;
-/* A tangent is used if its origins were good for this many evaluations in the mean, or the present one for that many. */
-static const double enough = 3.0, enough_now = 9.0;
-/* Decay of the usual boundary friction with the slide-roll ratio. */
-static const double usual_decay = 181.46;
-/* Corrections after which slopes are computed again by differences, which cost about as many exact evaluations: each correction is right along its
- * own step only. */
-enum { most_corrections = 20 };
 /* Losses by sliding and damping are never negative. Near zero, where they curve most, a tangent could make them so: they are bounded. */
 static void set_bounds(trb_tangents *t)
 {
 #define SENSE(X, name, sense, is_on, text) TRB_SENSE_##sense,
   static const trb_sense senses[] = {TRB_LOSSES(SENSE, 0)};
 #undef SENSE
-  for (int i = 0; i < TRB_TANGENT_OUT; i++) t->least[i] = t->anything[i] = -INFINITY;
+  for (int i = 0; i < TRB_TANGENT_OUT; i++) t->lower_bound[i] = t->no_bound[i] = -INFINITY;
   for (int k = 0; k < TRB_N_ROLLER_LOSSES; k++)
-    if (senses[k] == TRB_SENSE_TAKES) t->least[TRB_FLOW_quadrature + TRB_Q_losses + k] = 0.0;
+    if (senses[k] == TRB_SENSE_TAKES) t->lower_bound[TRB_FLOW_quadrature + TRB_Q_losses + k] = 0.0;
 }
 
 trb_status trb_tangents_create(const trb_system *system, trb_tangents **tangents, trb_message *message)
@@ -38,8 +30,8 @@ trb_status trb_tangents_create(const trb_system *system, trb_tangents **tangents
     t->rollers = trb_memory_zeros(&t->memory, n, sizeof *t->rollers);
     t->rings = trb_memory_zeros(&t->memory, n * (size_t)system->n_moving, sizeof *t->rings);
     t->seen = trb_memory_zeros(&t->memory, n * (size_t)system->n_moving, sizeof *t->seen);
-    t->partly = trb_memory_zeros(&t->memory, n, sizeof *t->partly);
-    t->beyond = trb_memory_zeros(&t->memory, n, sizeof *t->beyond);
+    t->flows_of_one_ring = trb_memory_zeros(&t->memory, n, sizeof *t->flows_of_one_ring);
+    t->out_of_bounds = trb_memory_zeros(&t->memory, n, sizeof *t->out_of_bounds);
   }
   if (t == NULL || t->memory.lacks) {
     trb_tangents_free(t);
@@ -79,7 +71,7 @@ static void differentiate(trb_tangents *t, trb_dynamics *d, const trb_instant *a
     double       flow[TRB_FLOW_SIZE];
     trb_dynamics_roller_flow(d, j, &d->loads[j], flow);
     for (int i = 0; i < TRB_FLOW_SIZE; i++) r->slope[column][i] = per * (flow[i] - r->value[i]);
-    if (column < TRB_NR) memcpy(r->found[column], r->slope[column], sizeof r->found[column]);
+    if (column < TRB_NR) memcpy(r->by_differences[column], r->slope[column], sizeof r->by_differences[column]);
     trb_rings_differentiate_reactions(t, d, j, column, per, -1);
   }
 }
@@ -128,16 +120,16 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const int *cho
     differentiate(t, d, &at, c, 1.0 / h);
   }
   if (frame_speed != 0.0) {
-    trb_dynamics_pose_of(d, time + turn_difference / fabs(frame_speed), y, chosen, n);
+    trb_dynamics_pose_of(d, time + trb_turn_difference / fabs(frame_speed), y, chosen, n);
     trb_rings_see(t, d, 1);
-    differentiate(t, d, &at, TRB_TANGENT_TURN, copysign(1.0 / turn_difference, frame_speed));
+    differentiate(t, d, &at, TRB_TANGENT_TURN, copysign(1.0 / trb_turn_difference, frame_speed));
   }
   trb_dynamics_pose_of(d, time, y, chosen, n);
   trb_rings_differentiate(t, d, chosen, n);
   /* these slopes are exact, so tangents are used at once, with a small reach */
   for (int k = 0; k < n && !t->has_slopes; k++) {
     t->rollers[chosen[k]].reach = trb_first_reach;
-    t->rollers[chosen[k]].usual = enough;
+    t->rollers[chosen[k]].mean_uses = trb_least_mean_uses;
   }
   if (n == m->n_rollers) {
     t->time = time;
@@ -146,12 +138,12 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const int *cho
   if (!all_finite(t, chosen, n)) trb_tangents_forget(t);
 }
 
-int trb_tangents_are_worn(const trb_tangents *t, int roller) { return t->rollers[roller].corrected >= most_corrections; }
+int trb_tangents_are_worn(const trb_tangents *t, int roller) { return t->rollers[roller].corrected >= TRB_MOST_CORRECTIONS; }
 
 const double *trb_tangents_column(const trb_tangents *t, int roller, int column)
 {
   const trb_tangent *r = &t->rollers[roller];
-  return r->usual >= enough ? r->slope[column] : r->found[column];
+  return r->mean_uses >= trb_least_mean_uses ? r->slope[column] : r->by_differences[column];
 }
 
 const trb_ring_tangent *trb_tangents_ring(const trb_tangents *t, int roller, int ring) { return trb_tangents_ring_of(t, roller, ring); }
@@ -159,19 +151,19 @@ const trb_ring_tangent *trb_tangents_ring(const trb_tangents *t, int roller, int
 const trb_ring_slopes *trb_tangents_ring_slopes(const trb_tangents *t, int roller, int ring)
 {
   const trb_ring_tangent *of = trb_tangents_ring_of(t, roller, ring);
-  return t->rollers[roller].usual >= enough ? &of->slopes : &of->found;
+  return t->rollers[roller].mean_uses >= trb_least_mean_uses ? &of->slopes : &of->by_differences;
 }
 
-/* The share of the mean rolling speed that a roller may slip away is meant for the usual boundary friction, which turns from its slope
- * to its limit over one part in `usual_decay` of that speed. Where the scene's law turns over less, this gives the rolling speed at which
- * the usual one would turn over as little: the range in which friction is linear is the law's own, however fast the bearing runs. */
+/* The share of the mean rolling speed that a roller may slip away is meant for the boundary friction of the standard inputs, which turns from
+ * its slope to its limit over one part in `trb_decay_of_slip_share` of that speed. Where the scene's law turns over less, this gives the rolling
+ * speed at which that one would turn over as little: the range in which friction is linear is the law's own, however fast the bearing runs. */
 static double speed_of_range(const trb_model *m, double speed)
 {
   const trb_params *p = &m->params;
   const int         dry = p->lubrication == TRB_LUBRICATION_DRY, boundary = p->lubrication == TRB_LUBRICATION_BOUNDARY;
   if (!m->friction) return speed;
-  if (boundary || p->lubrication == TRB_LUBRICATION_MIXED) speed *= trb_min(usual_decay / p->boundary_decay, 1.0);
-  return dry || (!boundary && p->traction == TRB_TRACTION_COULOMB) ? trb_min(speed, usual_decay * p->coulomb_speed) : speed;
+  if (boundary || p->lubrication == TRB_LUBRICATION_MIXED) speed *= trb_min(trb_decay_of_slip_share / p->boundary_decay, 1.0);
+  return dry || (!boundary && p->traction == TRB_TRACTION_COULOMB) ? trb_min(speed, trb_decay_of_slip_share * p->coulomb_speed) : speed;
 }
 
 /* By how much a roller may slip away from its origin so that friction is linear. */
@@ -219,7 +211,7 @@ static void begin(void *self, const trb_dynamics *d, double time)
   t->slip = slip_allowed(d, t->measure->slip_share);
   trb_ring_offsets_of(d->system, d->bodies, t->offsets);
   trb_rings_place(t, d);
-  for (int j = 0; t->under_way && j < d->model->n_rollers; j++) t->rollers[j].known = 0;
+  for (int j = 0; t->under_way && j < d->model->n_rollers; j++) t->rollers[j].has_origin = 0;
 }
 
 static int follow(void *self, const trb_dynamics *d, int roller, const double *y, double *flow, trb_wrench *reactions)
@@ -230,23 +222,23 @@ static int follow(void *self, const trb_dynamics *d, int roller, const double *y
   const trb_block_kernels   *kernels = measure->kernels;
   double                     step[TRB_TANGENT_IN] = {0}, of_ring[TRB_MOST_MOVING_RINGS][TRB_RING_IN];
   if (t->under_way) return 0;
-  const double distance2 = r->known
+  const double distance2 = r->has_origin
                                ? kernels->step_from(r->origin, r->per, y, d->drive.frame_angle, step) + trb_rings_step(t, roller, of_ring)
                                : (double)INFINITY;
   const double slid = slipped(&t->model->params, step) + trb_rings_moved(t, d, roller);
-  t->beyond[roller] = !(distance2 <= r->reach * r->reach) || !(slid <= t->slip);
-  if (!t->beyond[roller]) {
+  t->out_of_bounds[roller] = !(distance2 <= r->reach * r->reach) || !(slid <= t->slip);
+  if (!t->out_of_bounds[roller]) {
     const unsigned open = trb_bounds_open(&t->arms, t->offsets, r->margin, measure->margin_share, r->origin, step, step[TRB_TANGENT_TURN]);
-    t->beyond[roller] = open != 0U && !is_near(t, d, roller, y, open);
+    t->out_of_bounds[roller] = open != 0U && !is_near(t, d, roller, y, open);
   }
-  r->served += !t->beyond[roller];
-  if (t->beyond[roller] || !(r->usual >= enough || r->served > enough_now)) return 0;
+  r->uses += !t->out_of_bounds[roller];
+  if (t->out_of_bounds[roller] || !(r->mean_uses >= trb_least_mean_uses || r->uses > trb_least_uses)) return 0;
   const double by = r->bends ? trb_tangent_bend(trb_tangent_share(t, roller, step, of_ring)) : 0.0;
-  kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, r->curve, by, t->least, flow);
+  kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, r->curve, by, t->lower_bound, flow);
   for (int k = 0; k < t->system->n_moving; k++) {
     const trb_ring_tangent *ring = trb_tangents_ring_of(t, roller, k);
     double                  reaction[TRB_RING_OUT];
-    kernels->follow_ring(&ring->slopes, ring->value, step, of_ring[k], t->least, flow, reaction);
+    kernels->follow_ring(&ring->slopes, ring->value, step, of_ring[k], t->lower_bound, flow, reaction);
     for (int i = 0; i < TRB_RING_OUT; i++) reaction[i] += by * ring->curve[i];
     reactions[k] = trb_ring_wrench(reaction);
   }
@@ -256,7 +248,7 @@ static int follow(void *self, const trb_dynamics *d, int roller, const double *y
 static void learn_exact(void *self, const trb_dynamics *d, int roller, const double *y, const double *flow, const trb_wrench *reactions)
 {
   trb_tangents *t = self;
-  if (t->under_way || !t->beyond[roller] || !t->has_slopes || !(t->measure->gamma > 0.0)) return;
+  if (t->under_way || !t->out_of_bounds[roller] || !t->has_slopes || !(t->measure->gamma > 0.0)) return;
   trb_tangent_learn(t, d, roller, y, flow, reactions);
 }
 

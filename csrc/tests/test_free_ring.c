@@ -103,11 +103,11 @@ static void test_order(void)
     memcpy(moved, y, sizeof moved);
     trb_dynamics_pose(d, 0.0, y);
     trb_tangents_differentiate(tangents, d, d->everyone, d->model->n_rollers, y, moved);
-    for (int j = 0; j < n; j++) tangents->rollers[j].usual = 1e9;
+    for (int j = 0; j < n; j++) tangents->rollers[j].mean_uses = 1e9;
     trb_tangents_derivative(tangents, d, &measure, 0.0, y, rates);
     trb_rhs(d, NULL, 0.0, y, exact);
     for (int i = 0; i < main_size; i++) CHECK_NEAR(rates[i], exact[i], 1e-12 * fabs(exact[i]) + 1e-9);
-    for (int j = 0; j < n; j++) tangents->rollers[j].usual = 1e9, tangents->rollers[j].reach = 1e6;
+    for (int j = 0; j < n; j++) tangents->rollers[j].mean_uses = 1e9, tangents->rollers[j].reach = 1e6;
     memcpy(to, y, sizeof to);
     for (int i = 0; i < main_size; i++)
       if (i < rig_cage(system) || i >= ring_at(system)) to[i] += far * scale[i] * rig_random(&here);

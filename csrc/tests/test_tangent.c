@@ -65,7 +65,7 @@ static int open_bench(bench *b, const trb_params *params, double share, double b
   memcpy(b->moved, b->y, sizeof b->moved);
   trb_dynamics_pose(b->d, 0.0, b->y);
   trb_tangents_differentiate(b->tangents, b->d, b->d->everyone, b->d->model->n_rollers, b->y, b->moved);
-  for (int j = 0; j < b->model->n_rollers; j++) b->tangents->rollers[j].usual = 1e9;
+  for (int j = 0; j < b->model->n_rollers; j++) b->tangents->rollers[j].mean_uses = 1e9;
   return 1;
 }
 
@@ -135,7 +135,8 @@ static void test_chosen(const trb_params *params)
   for (int k = 0; k < 2; k++) {
     const trb_tangent *one = &alone[chosen[k]], *all = &b.tangents->rollers[chosen[k]];
     CHECK(memcmp(one->slope, all->slope, sizeof one->slope) == 0 && memcmp(one->origin, all->origin, sizeof one->origin) == 0);
-    CHECK(memcmp(one->value, all->value, sizeof one->value) == 0 && memcmp(one->found, all->found, sizeof one->found) == 0);
+    CHECK(memcmp(one->value, all->value, sizeof one->value) == 0 &&
+          memcmp(one->by_differences, all->by_differences, sizeof one->by_differences) == 0);
   }
   close_bench(&b);
 }
@@ -150,8 +151,8 @@ static void test_order(const trb_params *params)
     trb_tangents_differentiate(b.tangents, b.d, b.d->everyone, b.d->model->n_rollers, b.y, b.moved);
     trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, b.y, found);
     for (int j = 0; j < b.model->n_rollers; j++) {
-      CHECK(b.tangents->rollers[j].known);
-      b.tangents->rollers[j].usual = 1e9;
+      CHECK(b.tangents->rollers[j].has_origin);
+      b.tangents->rollers[j].mean_uses = 1e9;
       b.tangents->rollers[j].reach = 1e6;
     }
     place(&b, k == 0 ? 40.0 : 20.0, y);
@@ -183,7 +184,7 @@ static void test_turn(const trb_params *params)
     trb_tangents_differentiate(b.tangents, b.d, b.d->everyone, b.d->model->n_rollers, b.y, b.moved);
     trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, b.y, found);
     for (int j = 0; j < b.model->n_rollers; j++) {
-      b.tangents->rollers[j].usual = 1e9;
+      b.tangents->rollers[j].mean_uses = 1e9;
       b.tangents->rollers[j].reach = 1e6;
     }
     trb_tangents_derivative(b.tangents, b.d, &b.measure, time, b.y, found);
@@ -209,7 +210,7 @@ static void test_bend(const trb_params *params)
     trb_dynamics_pose(b.d, 0.0, b.y);
     trb_tangents_differentiate(b.tangents, b.d, b.d->everyone, b.d->model->n_rollers, b.y, b.moved);
     for (int origin = 0; origin < 2; origin++) {
-      for (int j = 0; j < b.model->n_rollers; j++) b.tangents->rollers[j].reach = 0.0, b.tangents->rollers[j].usual = 1e9;
+      for (int j = 0; j < b.model->n_rollers; j++) b.tangents->rollers[j].reach = 0.0, b.tangents->rollers[j].mean_uses = 1e9;
       trb_tangents_derivative(b.tangents, b.d, &b.measure, origin * time, b.y, found);
     }
     for (int j = 0; j < b.model->n_rollers; j++) {
@@ -293,7 +294,7 @@ static void test_bounds(const trb_params *params, double of_rolling, double spee
     /* near the rib */
     origin[trb_state_roller(b.system, j) + TRB_ROLLER_z] += 0.9 * margins[TRB_PAIR_rib] / face->sine;
     trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, origin, found); /* the origins are there */
-    for (int i = 0; i < b.model->n_rollers; i++) b.tangents->rollers[i].reach = b.tangents->rollers[i].usual = 1e9;
+    for (int i = 0; i < b.model->n_rollers; i++) b.tangents->rollers[i].reach = b.tangents->rollers[i].mean_uses = 1e9;
     const long long before = b.d->work->counters.tangent_rollers;
     const double    race = fmin(margins[TRB_PAIR_outer], margins[TRB_PAIR_inner]), rib = fabs(margins[TRB_PAIR_rib]);
     /* a slip within what is allowed, a way along the rib and towards a raceway, a slip beyond, a way along the rib that its bound does not tell
@@ -311,7 +312,7 @@ static void test_bounds(const trb_params *params, double of_rolling, double spee
     for (int i = 0; i < TRB_ROLLER_SIZE; i++) y[trb_state_roller(b.system, j) + i] += moved[i];
     trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, y, found);
     CHECK(b.d->work->counters.tangent_rollers - before == b.model->n_rollers - beyond);
-    CHECK(b.tangents->beyond[j] == beyond);
+    CHECK(b.tangents->out_of_bounds[j] == beyond);
   }
   close_bench(&b);
 }
@@ -363,7 +364,7 @@ static void test_seldom(const trb_params *params)
   double    y[MOST], found[MOST], exact[MOST];
   long long used = 0;
   if (!open_bench(&b, params, 0.05, ANYWHERE)) return;
-  for (int j = 0; j < b.model->n_rollers; j++) b.tangents->rollers[j].usual = 0.0;
+  for (int j = 0; j < b.model->n_rollers; j++) b.tangents->rollers[j].mean_uses = 0.0;
   for (int k = 0; k < 400; k++) {
     place(&b, k % 2 == 0 ? 3e4 : -3e4, y);
     trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, y, found);
