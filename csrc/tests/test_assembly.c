@@ -272,7 +272,7 @@ static void test_steps(int housed)
     CHECK_SAYS(message.text, "values needed");
     if (!CHECK(trb_simulation_create(systems, motions, N, kinds[k], "", &settings, 0.0, p->y, size, &s, &message) == TRB_OK)) return;
     const int length = trb_simulation_row(s);
-    double   *row = calloc(2 * (size_t)length, sizeof *row), times[2] = {0.0, 2e-4};
+    double   *row = calloc(2 * (size_t)length, sizeof *row), times[2] = {0.0, 1e-4};
     int       rows;
     long      steps;
     if (!CHECK(row != NULL)) return;

@@ -193,7 +193,7 @@ static void test_failed_step(void)
  * disturbance of the start; whatever impacts, tangents or Jacobians might remember shows with one of them. */
 static void test_set_state(const char *kind, double share)
 {
-  enum { STEPS = 3000 };
+  enum { STEPS = 1000 };
   trb_settings       settings = rig_settings();
   const int          n = trb_state_size(built);
   const size_t       length = sizeof(double) * (size_t)n;

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -262,14 +263,15 @@ def test_bands_are_those_of_a_sample_ten_times_as_large(case: str) -> None:
             assert few[name].shares.get(path, share) == pytest.approx(share, abs=0.15)
 
 
-def test_a_measured_torque_narrows_the_bands() -> None:
+def test_a_measured_torque_narrows_the_bands(tmp_path: Path) -> None:
     """By hand: weights of a normal error over the draws; a torque that no draw gives is refused."""
     scene = trb.cases.scene_32216(2000.0).replace({"effects.bodies": "rollers_and_spacer"})
-    options = trb.RunOptions(duration=1e-3, accuracy="fast")
+    options = trb.RunOptions(duration=1e-3, accuracy="fast", save_groups=("contacts", "torque"))
     bands = {"effects.supply": (0.7, 1.0), "lubricant.temperature_c": (47.0, 60.0)}
-    prior = trb.uncertainty(scene, bands, samples=64, options=options)
+    how: dict[str, Any] = {"options": options, "folder": tmp_path / "draws"}
+    prior = trb.uncertainty(scene, bands, samples=32, **how)
     value = prior["torque"].value
-    found = trb.uncertainty(scene, bands, samples=64, options=options, given={"torque": (value, 0.05 * value)})
+    found = trb.uncertainty(scene, bands, samples=32, given={"torque": (value, 0.05 * value)}, **how)
     drawn = prior.data["torque"].values[1:]
     weight = np.exp(-0.5 * ((drawn - value) / (0.05 * value)) ** 2)
     assert found["torque"].mean == pytest.approx(float(weight @ drawn / weight.sum()))
@@ -277,6 +279,6 @@ def test_a_measured_torque_narrows_the_bands() -> None:
     assert found["torque"].high - found["torque"].low < 0.8 * (prior["torque"].high - prior["torque"].low)
     assert "given torque" in str(found)
     with pytest.raises(trb.InputError, match="count as"):
-        trb.uncertainty(scene, bands, samples=8, options=options, given={"torque": (10.0 * value, 0.01 * value)})
+        trb.uncertainty(scene, bands, samples=8, **how, given={"torque": (10.0 * value, 0.01 * value)})
     with pytest.raises(trb.InputError, match=r"given\.tork"):
         trb.uncertainty(scene, bands, samples=8, options=options, given={"tork": (1.0, 0.1)})

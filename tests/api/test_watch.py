@@ -260,7 +260,7 @@ def test_a_run_in_short_pieces_is_watched_as_one():
     scene = hardly_loaded().replace(axial_load=150.0, radial_load=0.0)
     sim = trb.Simulation(scene, accuracy="fast")
     with pytest.warns(trb.RunWarning, match="vibrate") as said:
-        warned = [bool(sim.run(duration=2e-3).warnings) for _ in range(6)]
+        warned = [bool(sim.run(duration=2e-3).warnings) for _ in range(4)]
     assert all(warned[2:])
     assert sum("vibrate" in str(one.message) for one in said) == 1, "once on the screen, in each result"
 
@@ -280,7 +280,7 @@ def test_energy_that_is_off_by_little_in_each_piece_is_seen_over_all_of_them():
 def test_rollers_that_bounce_without_damping_are_said():
     """Losses are 9, 11, 22 and 31 W with finer and finer tolerances: the integration decides about the vibrations."""
     with pytest.warns(trb.RunWarning, match="vibrate on their raceways"):
-        result = trb.Simulation(loose_scene()).run(duration=0.03)
+        result = trb.Simulation(loose_scene()).run(duration=0.012)
     assert result.success
     assert any("effects.damping" in text for text in result.warnings)
 
@@ -289,9 +289,9 @@ def test_the_damping_that_the_warning_names_makes_presets_agree():
     losses = []
     for accuracy in ("standard", "reference"):
         scene = loose_scene(damping="hunt_crossley", damping_race=1.0, damping_cage=1.0)
-        result = trb.Simulation(scene, accuracy=accuracy).run(duration=0.03, save_every=1e-3)
+        result = trb.Simulation(scene, accuracy=accuracy).run(duration=0.015, save_every=1e-3)
         names = [field.name for field in result.fields if field.name.startswith("loss_")]
-        losses.append(sum(float(result[name][-1] - result[name][10]) for name in names))
+        losses.append(sum(float(result[name][-1] - result[name][5]) for name in names))
     # other roundings (instruction sets, -O1) give 1 to 15 %; without damping the presets differ by 37 to 41 %
     assert losses[0] == pytest.approx(losses[1], rel=0.25)
 
@@ -299,7 +299,7 @@ def test_the_damping_that_the_warning_names_makes_presets_agree():
 @pytest.mark.parametrize("loads", [(1230.0, 0.0), (4930.0, 12_000.0)], ids=["light", "combined"])
 def test_rollers_that_carry_are_not_called_vibrating(loads):
     """Not in the unloaded zone of a combined load, either: the others carry."""
-    result = trb.Simulation(paper_30310(2000.0, *loads), accuracy="reference").run(duration=0.03)
+    result = trb.Simulation(paper_30310(2000.0, *loads), accuracy="reference").run(duration=0.015)
     assert result.warnings == ()
 
 

@@ -211,6 +211,7 @@ def test_a_run_can_be_stopped_and_survives_the_browser(user: Any, shared: Any) -
     assert shared.process.poll() is None
 
 
+@pytest.mark.slow
 def test_stop_while_a_report_is_drawn(user: Any, shared: Any) -> None:
     """The run has ended by then: its report is drawn to its end."""
     opened(user, shared)

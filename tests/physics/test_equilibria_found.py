@@ -10,6 +10,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -59,8 +60,9 @@ def random_speed(random: np.random.Generator) -> float:
     return 0.0 if random.random() < 0.1 else round(speed, 3)
 
 
-def shafts(seed: int, count: int) -> Iterator[trb.Assembly]:
-    """Random shafts: pairs with play or preload, with a spring, motor shafts; loads along any direction."""
+def shafts(seed: int, count: int) -> Iterator[Callable[[], trb.Assembly]]:
+    """Random shafts, made where they are called: pairs with play or preload, with a spring, motor shafts; loads along any
+    direction."""
     random, bearings = np.random.default_rng(seed), tapered()
     for _ in range(count):
         left, right = random.choice(list(bearings), 2)
@@ -70,37 +72,48 @@ def shafts(seed: int, count: int) -> Iterator[trb.Assembly]:
         across = 10.0 ** random.uniform(0.5, 4.2) * np.exp(2j * math.pi * random.random())
         along = float(random.choice([0.0, 1.0, -1.0]) * abs(across) * random.uniform(0.0, 0.6))
         where = float(random.uniform(-0.8, 0.8)) * spread
-        load = trb.ShaftLoad(position=where, force=(across.real, across.imag, along))
-        shaft = trb.Shaft.hollow_cylinder(
-            mass=float(random.uniform(1.0, 30.0)), outer_diameter=0.05, length=spread + 0.1
-        )
-        common: dict[str, Any] = {"shaft": shaft, "loads": [load], "speed_rpm": random_speed(random)}
-        if kind == "motor":
-            guided = trb.cases.bearing_nj210()
-            ends = [
-                trb.ShaftBearing(guided, position=-0.5 * spread, small_ends=random.choice(["left", "right"])),
-                trb.ShaftBearing(bearings[left], position=0.5 * spread, small_ends="left", end_play=0.5 * play),
-                trb.ShaftBearing(
-                    bearings[right], position=0.5 * spread + 0.09, small_ends="right", end_play=0.5 * play
-                ),
-            ]
-            yield trb.Assembly(bearings=ends, **common)
-            continue
-        pair = trb.Assembly.pair(
-            bearings[left],
-            "back to back" if back else "face to face",
-            other=bearings[right],
-            spread=spread if back else spread + 0.15,
-            end_play=play,
-            **common,
-        )
-        if kind == "spring":
-            first, second = pair.bearings
-            spring = trb.PreloadSpring(
-                force=float(random.uniform(50.0, 2000.0)), stiffness=float(random.uniform(1e4, 1e6))
-            )
-            pair = pair.replace(bearings=(first.replace(spring=spring, end_play=0.0), second))
-        yield pair
+        load = {"position": where, "force": (across.real, across.imag, along)}
+        mass, speed = float(random.uniform(1.0, 30.0)), random_speed(random)
+        side = random.choice(["left", "right"]) if kind == "motor" else ""
+        spring = (float(random.uniform(50.0, 2000.0)), float(random.uniform(1e4, 1e6))) if kind == "spring" else None
+        yield partial(shaft_of, bearings[left], bearings[right], back, play, spread, load, mass, speed, side, spring)
+
+
+def shaft_of(
+    left: trb.Bearing,
+    right: trb.Bearing,
+    back: bool,
+    play: float,
+    spread: float,
+    load: dict[str, Any],
+    mass: float,
+    speed: float,
+    side: Any,
+    spring: tuple[float, float] | None,
+) -> trb.Assembly:
+    """A shaft; `side`: where the small ends of the guided bearing of a motor shaft point."""
+    shaft = trb.Shaft.hollow_cylinder(mass=mass, outer_diameter=0.05, length=spread + 0.1)
+    common: dict[str, Any] = {"shaft": shaft, "loads": [trb.ShaftLoad(**load)], "speed_rpm": speed}
+    if side:
+        ends = [
+            trb.ShaftBearing(trb.cases.bearing_nj210(), position=-0.5 * spread, small_ends=side),
+            trb.ShaftBearing(left, position=0.5 * spread, small_ends="left", end_play=0.5 * play),
+            trb.ShaftBearing(right, position=0.5 * spread + 0.09, small_ends="right", end_play=0.5 * play),
+        ]
+        return trb.Assembly(bearings=ends, **common)
+    pair = trb.Assembly.pair(
+        left,
+        "back to back" if back else "face to face",
+        other=right,
+        spread=spread if back else spread + 0.15,
+        end_play=play,
+        **common,
+    )
+    if spring is None:
+        return pair
+    first, second = pair.bearings
+    pushed = trb.PreloadSpring(force=spring[0], stiffness=spring[1])
+    return pair.replace(bearings=(first.replace(spring=pushed, end_play=0.0), second))
 
 
 def light_loads(seed: int, count: int) -> Iterator[trb.Scene]:
@@ -263,7 +276,8 @@ def other_ring(scene: trb.Scene) -> Array | None:
 def refused_shafts(seed: int, count: int) -> tuple[int, list[str]]:
     """How many shafts the package refuses, and which of them are wrong; so are those that it finds and that nothing can carry."""
     refused, wrong = 0, []
-    for number, assembly in enumerate(shafts(seed, count)):
+    for number, made in enumerate(shafts(seed, count)):
+        assembly = made()
         impossible = share_carried(assembly) < SURELY
         try:
             trb.equilibrium(assembly)
@@ -298,8 +312,8 @@ def test_no_shaft_is_refused_that_another_search_finds(seed: int, count: int, re
 
 @pytest.mark.parametrize("number", [53, 176, 498])
 def test_rollers_that_hardly_touch_and_springs_far_back_do_not_stop_the_search(number: int) -> None:
-    assembly = next(itertools.islice(shafts(48, 500), number, None))
-    assert trb.equilibrium(assembly).residual < 1e-6
+    made = next(itertools.islice(shafts(48, 500), number, None))
+    assert trb.equilibrium(made()).residual < 1e-6
 
 
 @pytest.mark.parametrize("count", [20, pytest.param(500, marks=pytest.mark.slow)])

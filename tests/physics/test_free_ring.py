@@ -81,7 +81,7 @@ def test_a_support_carries_what_moves_the_shaft() -> None:
     simulation.set_state(vector)
     axial = float(modes.frequencies[np.argmax(np.abs(modes.shapes[:, 2]))])
     step = 1.0 / axial / 20.0
-    result = simulation.run(duration=40.0 / axial, save_every=step)
+    result = simulation.run(duration=16.0 / axial, save_every=step)
     assert peaks_of(result["ring_position"][:, 2], step, axial) == pytest.approx(axial, rel=1e-2)
 
 

@@ -60,7 +60,7 @@ WHOLE = {
     ".ci/run",
     ".venv/bin/pytest",
 }
-INSTALLS = {"pip install .", "pip install -e ."}
+INSTALLS = {"pip install .", "pip install -e .", 'pip install ".[app]"'}
 RELEASED = {"pip install trbdyn", 'pip install "trbdyn[notebooks]"', 'pip install "trbdyn[app]"'}
 WHEEL = re.compile(r"pip install trbdyn-([\d.]+)-cp311-abi3-(manylinux_\d+_\d+)_x86_64\.whl")
 MINUTES = {
@@ -83,6 +83,7 @@ SLOWER = (
     "python -m trbdyn sweep cage_mass -o study",
     "python tests/adversary/adversary.py ",
     "python benchmarks/ordinary.py",
+    "python docs/recorded.py demo",
 )
 TIME_GIVEN = re.compile(
     r"(?<=--minutes )[\d.]+"

@@ -10,7 +10,7 @@ from hard_pairs import PAIRS
 from hard_runs import judge
 from hard_scenes import HARD, Hard
 
-QUICK = 12
+QUICK = 6
 """Scenes that every test run looks at, besides the impossible ones."""
 
 

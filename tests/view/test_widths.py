@@ -19,7 +19,7 @@ WIDTHS = (420, 1000, 1400)
 def long_run() -> trb.Result:
     """Long enough for every note, and why it has no intervals: the paper's effects give the rings different torques."""
     scene = trb.cases.scene_30310(3000.0, 4930.0, effects=trb.Effects.paper(), start=trb.Start.whirl(0.9))
-    return trb.Simulation(scene).run(revolutions=60)
+    return trb.Simulation(scene, accuracy="fast").run(revolutions=60)
 
 
 @pytest.fixture(scope="module")
