@@ -115,7 +115,7 @@ def main(arguments: Sequence[str] | None = None) -> common.Report:
     with tempfile.TemporaryDirectory() as own:
         folder = options.folder or Path(own)
         folder.mkdir(parents=True, exist_ok=True)
-        for scene in options.scenes:
+        for scene in options.scenes[:1] if options.smoke else options.scenes:
             share = 0.05 if options.smoke else 0.2 if options.quick else 1.0
             turns, most = SCENES[scene][3:]
             if options.smoke:

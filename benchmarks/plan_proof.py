@@ -243,6 +243,8 @@ def main() -> None:
         report.readme = _page(report.results, report.summary)
         report.finish()
         return
+    if options.smoke:
+        options.effort, options.truth = 2.0, 5.0
     names = options.scenes or (QUICK[:1] if options.smoke else QUICK if options.quick else list(scenes()))
     if options.drawn is not None:
         names = [f"{DRAWN}{seed}" for seed in range(options.seed, options.seed + options.drawn)]
