@@ -92,7 +92,7 @@ static void try_rings(rig_bench *b, double aside, double lean, double off, doubl
   trb_loads          *loads = calloc(2 * n, sizeof *loads);
   double (*before)[TRB_MOST_PAIRS] = calloc(2 * n, sizeof *before), (*after)[TRB_MOST_PAIRS] = before + n;
   const double share = 0.5;
-  for (int k = 0; k < 1500; k++) {
+  for (int k = 0; k < 600; k++) {
     double place[MOST], to[MOST], turn = rig_random(&seed), turned = turn;
     stand  from = {0}, there;
     memcpy(place, b->start, sizeof place);

@@ -484,12 +484,12 @@ def test_rows_of_other_makers(every: int) -> None:
     assert not refused
 
 
-@pytest.mark.parametrize("name", [*ROWS][::5])
-def test_rows_of_the_table_run(name: str) -> None:
+def test_rows_of_the_table_run() -> None:
     """A simulation of each begins, without a warning of what nobody gave."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        trb.Simulation(trb.Scene(trb.Bearing.named(name), speed_rpm=1000.0, axial_load=0.04 * ROWS[name].C))
+        for name in [*ROWS][::5]:
+            trb.Simulation(trb.Scene(trb.Bearing.named(name), speed_rpm=1000.0, axial_load=0.04 * ROWS[name].C))
 
 
 @pytest.mark.parametrize(

@@ -27,15 +27,15 @@ COMBINED = next(place for place in PLACES if place.condition.radial_load)
 
 
 class TestInputs:
-    @pytest.mark.parametrize(("entry", "level"), LEVELS, ids=[f"{e.name} {v.label}" for e, v in LEVELS])
-    def test_a_level_builds_a_scene_of_its_own(self, entry: Any, level: Any) -> None:
-        place = COMBINED if entry.combined_only else PLACES[0]
-        nominal = case(place, "full", 0, None, None, 1e-3)
-        other = case(place, "full", 0, entry, level, 1e-3)
-        assert other.error == ""
-        assert other.fingerprint != nominal.fingerprint
-        same_scene = other.scene.fingerprint == nominal.scene.fingerprint  # type: ignore[union-attr]
-        assert same_scene == (entry.name in ("tolerances", "run time"))
+    def test_a_level_builds_a_scene_of_its_own(self) -> None:
+        of_place = {place: case(place, "full", 0, None, None, 1e-3) for place in (COMBINED, PLACES[0])}
+        for entry, level in LEVELS:
+            place = COMBINED if entry.combined_only else PLACES[0]
+            nominal, other = of_place[place], case(place, "full", 0, entry, level, 1e-3)
+            assert other.error == "", (entry.name, level.label)
+            assert other.fingerprint != nominal.fingerprint, (entry.name, level.label)
+            same_scene = other.scene.fingerprint == nominal.scene.fingerprint  # type: ignore[union-attr]
+            assert same_scene == (entry.name in ("tolerances", "run time")), (entry.name, level.label)
 
     def test_names_tell_inputs_and_levels_apart(self) -> None:
         assert len({entry.name for entry in ENTRIES}) == len(ENTRIES)

@@ -79,8 +79,12 @@ def cage_of(kit: SimpleNamespace, sim: Simulation, vector: Array) -> tuple[Array
 
 
 @pytest.mark.parametrize("e", [0.0, 0.1, 0.5, 0.9, 0.99])
-@pytest.mark.parametrize("angle_deg", [0.0, 20.0, 90.0, 160.0, 180.0, -60.0])
-def test_integrals_of_the_film(e: float, angle_deg: float) -> None:
+def test_integrals_of_the_film(e: float) -> None:
+    for angle_deg in (0.0, 20.0, 90.0, 160.0, 180.0, -60.0):
+        integrals_are_those_of_quadrature(e, angle_deg)
+
+
+def integrals_are_those_of_quadrature(e: float, angle_deg: float) -> None:
     along, across = e * math.cos(math.radians(angle_deg)), e * math.sin(math.radians(angle_deg))
     for law, part in ((trb.laws.journal_along, np.cos), (trb.laws.journal_across, np.sin)):
 
