@@ -12,7 +12,7 @@
 #   make sanitize   the C tests and the Python tests that reach all of the C code, under address and undefined-behaviour sanitizers
 #   make cross      the core and its C tests for Windows, aarch64 and macOS; where a system can be had here, the tests run; minutes long
 #   make docs       the documentation site in build/docs, ready to host (make site is the same); its code is run, and a page whose inputs
-#                   are those of the last run is not run again; warnings are errors
+#                   are those of the last run is not run again; warnings are errors (CHECK=1 leaves out the pages of the sources)
 #   make figures    the pictures of README and site are made again (FIGURES="report.png" picks some); needs Chromium
 #   make wheels     a source distribution and a wheel in dist/, audited and tried in an empty environment
 #   make mutate     small faults put into a copy of the sources: how many do the tests notice? (COUNT=250 MINUTES=90 SEED=1)
@@ -30,6 +30,7 @@ PYTEST ?=
 SLOW   ?=
 JOBS   ?= 2
 QUICK  ?=
+CHECK  ?=
 SMOKE  ?=
 BENCH  ?= $(filter-out common bit_identity paired,$(basename $(notdir $(wildcard benchmarks/*.py))))
 
@@ -64,7 +65,7 @@ demo: install
 site: docs
 
 docs: install $(VENV)/.docs
-	$(PY) -m sphinx -j $(JOBS) -W --keep-going -b html -d build/docs-cache docs build/docs
+	$(PY) -m sphinx -j $(JOBS) $(if $(CHECK),-t check) -W --keep-going -b html -d build/docs-cache docs build/docs
 	@echo "build/docs/index.html"
 
 figures: install $(VENV)/.test

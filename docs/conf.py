@@ -31,12 +31,13 @@ extensions = [
     "myst_nb",
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
-    "sphinx.ext.viewcode",
     "sphinx_copybutton",
     "sphinx.ext.mathjax",
     "sphinx-mathjax-offline",  # puts MathJax into the site: equations are shown without a network
     "shown_pictures",
 ]
+if not tags.has("check"):  # noqa: F821  (Sphinx gives it)
+    extensions.append("sphinx.ext.viewcode")  # a page of each source
 myst_enable_extensions = ["dollarmath", "amsmath", "colon_fence", "deflist"]
 myst_heading_anchors = 3
 exclude_patterns = ["_build", "extensions", "static"]

@@ -256,6 +256,14 @@ def test_a_difference_is_said_beyond_the_scatter_of_runs_that_are_as_good(off, s
     assert difference.notable(certain=False) == possible
 
 
+@pytest.fixture
+def short_probes(monkeypatch):
+    """The repetition that decides about a warning is no longer than the first one: what it says stands in other tests."""
+    monkeypatch.setattr("trbdyn.run.vibrations.LONGER", 20e-3)
+    monkeypatch.setattr("trbdyn.run.vibrations.STEPS_LONGER", 20_000)
+
+
+@pytest.mark.usefixtures("short_probes")
 def test_a_run_in_short_pieces_is_watched_as_one():
     scene = hardly_loaded().replace(axial_load=150.0, radial_load=0.0)
     sim = trb.Simulation(scene, accuracy="fast")
@@ -277,6 +285,7 @@ def test_energy_that_is_off_by_little_in_each_piece_is_seen_over_all_of_them():
     assert any("from 0 s to" in text for text in found)
 
 
+@pytest.mark.usefixtures("short_probes")
 def test_rollers_that_bounce_without_damping_are_said():
     """Losses are 9, 11, 22 and 31 W with finer and finer tolerances: the integration decides about the vibrations."""
     with pytest.warns(trb.RunWarning, match="vibrate on their raceways"):
