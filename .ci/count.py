@@ -15,11 +15,14 @@ ENDINGS = (".py", ".c", ".h")
 PARTS = {
     "csrc, without tests": ("csrc/", "csrc/tests/"),
     "csrc/tests": ("csrc/tests/", None),
-    "trbdyn": ("trbdyn/", None),
+    "trbdyn, the core": ("trbdyn/", "trbdyn/extras/"),
+    "trbdyn/extras": ("trbdyn/extras/", None),
     "tests": ("tests/", None),
     "benchmarks": ("benchmarks/", None),
     ".ci": (".ci/", None),
 }
+BY_FOLDER = ("csrc, without tests", "trbdyn, the core", "trbdyn/extras")
+"""Parts whose folders are told, too."""
 
 
 def git(*words: str) -> list[str]:
@@ -52,7 +55,7 @@ def main() -> int:
         below: Counter[str] = Counter()
         for name, n in own.items():
             below["/".join(name.removeprefix(folder).split("/")[:-1][:1])] += n
-        for name, n in sorted(below.items()) if part in ("csrc, without tests", "trbdyn") else ():
+        for name, n in sorted(below.items()) if part in BY_FOLDER else ():
             print(f"{n:14d}    {name or 'files'}")
     print(f"{total:7d} {len(counted):6d} {'':>6}  in all")
     return 0

@@ -10,6 +10,7 @@ Tests of Ctrl-C send signals: a shell that starts tests in the background lets t
 from __future__ import annotations
 
 import gc
+import importlib.util
 import os
 import pickle
 import signal
@@ -65,17 +66,19 @@ def pytest_collection_finish() -> None:
 
 def pytest_sessionstart() -> None:
     """Before the fixtures of modules."""
-    from trbdyn.extras.study import executors
+    if importlib.util.find_spec("trbdyn.extras") is not None:  # tests/api/test_without_extras.py takes them away
+        from trbdyn.extras.study import executors
 
-    WORKERS.append(executors._processes)
-    executors._processes = done_here
+        WORKERS.append(executors._processes)
+        executors._processes = done_here
 
 
 def pytest_sessionfinish() -> None:
     """Another session may follow in this process."""
-    from trbdyn.extras.study import executors
+    if WORKERS:
+        from trbdyn.extras.study import executors
 
-    executors._processes = WORKERS.pop()
+        executors._processes = WORKERS.pop()
 
 
 WORKERS: Final[list[Any]] = []

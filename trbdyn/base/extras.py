@@ -47,7 +47,8 @@ def module(place: str, wanted: str) -> Any:
     except ModuleNotFoundError as error:
         if not (error.name or "").startswith(EXTRAS):
             raise
-        part = place.removeprefix(f"{EXTRAS}.").split(".")[0]
+        missing = place if error.name == EXTRAS else str(error.name)
+        part = f"{missing}.{wanted}".removeprefix(f"{EXTRAS}.").split(".")[0]
         raise MissingExtra(
             f"{wanted} needs the part '{part}' of trbdyn, which is not installed: there is no folder trbdyn/extras/{part}"
         ) from None
