@@ -8,12 +8,12 @@
 #include <string.h>
 
 typedef struct trb_standard_number {
-  size_t at; /* in trb_params */
+  int    at; /* number of the input */
   double value;
 } trb_standard_number;
 
 static const trb_standard_number trb_standard_case[] = {
-#define TRB_STANDARD(name, value) {offsetof(trb_params, name), value},
+#define TRB_STANDARD(name, value) {TRB_PARAM_##name, value},
 #include "api/standard_case.inc"
 #undef TRB_STANDARD
 };
@@ -39,7 +39,7 @@ trb_case *trb_case_new(void)
   trb_case *c = calloc(1, sizeof *c);
   if (c == NULL) return NULL;
   for (size_t i = 0; i < sizeof trb_standard_case / sizeof *trb_standard_case; i++)
-    *(double *)((char *)&c->params + trb_standard_case[i].at) = trb_standard_case[i].value;
+    ((double *)&c->params)[trb_standard_case[i].at] = trb_standard_case[i].value;
 #define TRB_CASE_VALUE(name, unit, value, lower, upper, text) c->own[TRB_CASE_##name] = value;
   TRB_CASE_NUMBERS(TRB_CASE_VALUE)
 #undef TRB_CASE_VALUE
@@ -115,7 +115,7 @@ trb_status trb_case_faces(const trb_case *c, trb_face *faces, trb_message *messa
   const trb_status  status = trb_geometry_derive(p, &g, message);
   if (status != TRB_OK) return status;
   /* sizes of the faces are those of the 30310, in proportion to the roller's diameter */
-  const double scale = p->roller_diameter / 14e-3, half = 0.5 * p->effective_length;
+  const double scale = p->roller.diameter / 14e-3, half = 0.5 * p->roller.effective_length;
   const double sn = sin(g.roller_half_angle), cn = cos(g.roller_half_angle), cm = cos(g.roller_axis_angle);
   const double ratio = c->own[TRB_CASE_play_circumferential] / c->own[TRB_CASE_play_radial];
   const double lean = atan2(ratio, cm) + asin(sn / cn * sin(g.roller_axis_angle) / hypot(cm, ratio));
@@ -123,7 +123,7 @@ trb_status trb_case_faces(const trb_case *c, trb_face *faces, trb_message *messa
   for (int i = 0; i < 2; i++) {
     const trb_vec3 m = trb_v(sin(lean), (i == 0 ? 1 : -1) * cos(lean), 0), a = trb_v(0, 0, 1);
     const trb_vec3 outward = trb_axpy(trb_scale(cn, m), -sn, a), along = trb_axpy(trb_scale(cn, a), sn, m);
-    const trb_vec3 origin = trb_axpy(trb_scale(0.5 * p->roller_diameter, m), gap, outward);
+    const trb_vec3 origin = trb_axpy(trb_scale(0.5 * p->roller.diameter, m), gap, outward);
     const double   from[2] = {-half, -1.5e-3 * scale}, to[2] = {half, 1.5e-3 * scale};
     faces[i] = rectangle(i, TRB_PART_FLANK, origin, along, trb_cross(trb_scale(-1, outward), along), from, to);
   }

@@ -60,7 +60,7 @@ static trb_status make_system(const trb_case *c, trb_run *run, trb_message *mess
   double     deviation[200] = {0}; /* as many rollers as a bearing may have */
   trb_status status = trb_case_faces(c, faces, message);
   if (status != TRB_OK) return status;
-  status = trb_model_create(&c->params, deviation, (int)c->params.n_rollers, faces, TRB_CASE_FACES, &run->model, message);
+  status = trb_model_create(&c->params, deviation, (int)c->params.bearing.n_rollers, faces, TRB_CASE_FACES, &run->model, message);
   return status == TRB_OK ? trb_system_tapered(run->model, &run->system, message) : status;
 }
 

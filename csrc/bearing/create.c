@@ -28,44 +28,46 @@ static trb_status check_params(const trb_params *params, trb_message *message)
     if ((strcmp(info->unit, "count") == 0 || strcmp(info->unit, "choice") == 0) && values[i] != floor(values[i]))
       return trb_fail(message, TRB_ERR_INPUT, "%s = %g: must be a whole number", info->name, values[i]);
   }
-  if (!(params->cup_half_angle == 0.0 || params->cup_half_angle >= TRB_LEAST_CONE))
+  if (!(params->bearing.cup_half_angle == 0.0 || params->bearing.cup_half_angle >= TRB_LEAST_CONE))
     return trb_fail(message, TRB_ERR_INPUT, "cup_half_angle = %g rad: must be 0, for cylindrical rollers, or at least %g rad",
-                    params->cup_half_angle, TRB_LEAST_CONE);
-  if (params->rolling_resistance > 0.0 && !(params->pressure_coefficient > 0.0))
+                    params->bearing.cup_half_angle, TRB_LEAST_CONE);
+  if (params->effects.rolling_resistance > 0.0 && !(params->oil.pressure_coefficient > 0.0))
     return trb_fail(message, TRB_ERR_INPUT, "pressure_coefficient = %g 1/Pa: must be > 0 for rolling resistance",
-                    params->pressure_coefficient);
-  if (!(params->lambda_full > params->lambda_boundary))
-    return trb_fail(message, TRB_ERR_INPUT, "lambda_full = %g: must be above lambda_boundary = %g", params->lambda_full,
-                    params->lambda_boundary);
-  if (!(params->rib_edge_high > params->rib_edge_low))
-    return trb_fail(message, TRB_ERR_INPUT, "rib_edge_high = %g m: must be above rib_edge_low = %g m", params->rib_edge_high,
-                    params->rib_edge_low);
-  if (!(params->front_rib_high > params->front_rib_low))
-    return trb_fail(message, TRB_ERR_INPUT, "front_rib_high = %g m: must be above front_rib_low = %g m", params->front_rib_high,
-                    params->front_rib_low);
-  if (!(params->land_contact_film >= TRB_LEAST_CONTACT_FILM * params->land_clearance &&
-        params->land_contact_film <= 0.5 * params->land_clearance))
+                    params->oil.pressure_coefficient);
+  if (!(params->friction.lambda_full > params->friction.lambda_boundary))
+    return trb_fail(message, TRB_ERR_INPUT, "lambda_full = %g: must be above lambda_boundary = %g", params->friction.lambda_full,
+                    params->friction.lambda_boundary);
+  if (!(params->rib.edge_high > params->rib.edge_low))
+    return trb_fail(message, TRB_ERR_INPUT, "rib_edge_high = %g m: must be above rib_edge_low = %g m", params->rib.edge_high,
+                    params->rib.edge_low);
+  if (!(params->rib.front_high > params->rib.front_low))
+    return trb_fail(message, TRB_ERR_INPUT, "front_rib_high = %g m: must be above front_rib_low = %g m", params->rib.front_high,
+                    params->rib.front_low);
+  if (!(params->land.contact_film >= TRB_LEAST_CONTACT_FILM * params->land.clearance &&
+        params->land.contact_film <= 0.5 * params->land.clearance))
     return trb_fail(message, TRB_ERR_INPUT, "land_contact_film = %g m: must be from %g to 0.5 of land_clearance = %g m",
-                    params->land_contact_film, TRB_LEAST_CONTACT_FILM, params->land_clearance);
+                    params->land.contact_film, TRB_LEAST_CONTACT_FILM, params->land.clearance);
   return TRB_OK;
 }
 
 static double profile_drop(const trb_model *m, double station)
 {
   const trb_params *p = &m->params;
-  if (p->profile == TRB_PROFILE_CROWNED) return trb_profile_crowned(station, p->crown_radius);
-  if (p->profile == TRB_PROFILE_LOGARITHMIC)
-    return trb_profile_logarithmic(station, p->effective_length, p->profile_k1, p->profile_k2, p->profile_zm, p->profile_load,
-                                   m->geometry.effective_modulus);
-  if (p->profile == TRB_PROFILE_ISO)
-    return trb_profile_iso(station, p->profile_a * p->roller_diameter, p->profile_c, p->profile_d, p->profile_k);
+  if (p->roller.profile == TRB_PROFILE_CROWNED) return trb_profile_crowned(station, p->roller.crown_radius);
+  if (p->roller.profile == TRB_PROFILE_LOGARITHMIC)
+    return trb_profile_logarithmic(station, p->roller.effective_length, p->roller.profile_k1, p->roller.profile_k2, p->roller.profile_zm,
+                                   p->roller.profile_load, m->geometry.effective_modulus);
+  if (p->roller.profile == TRB_PROFILE_ISO)
+    return trb_profile_iso(station, p->roller.profile_a * p->roller.diameter, p->roller.profile_c, p->roller.profile_d,
+                           p->roller.profile_k);
   return 0.0;
 }
 
 /* Length of the contact line: the ISO profile drops without bound at c_p + d_p, which may lie within the effective length. */
 static double line_length(const trb_params *p)
 {
-  return p->profile == TRB_PROFILE_ISO ? fmin(p->effective_length, p->profile_c + p->profile_d) : p->effective_length;
+  return p->roller.profile == TRB_PROFILE_ISO ? fmin(p->roller.effective_length, p->roller.profile_c + p->roller.profile_d)
+                                              : p->roller.effective_length;
 }
 
 /* Upper bound of n_slices in params.h. */
@@ -81,13 +83,13 @@ static trb_status fill_nodes(trb_model *m, const double *drops, trb_message *mes
   double              node[TRB_MAX_NODES], weight[TRB_MAX_NODES];
   if (m->n_nodes < 1 || m->n_nodes > TRB_MAX_NODES)
     return trb_fail(message, TRB_ERR_INPUT, "n_slices = %d: must be 1 to %d", m->n_nodes, TRB_MAX_NODES);
-  trb_quadrature((int)p->quadrature, m->n_nodes, node, weight);
+  trb_quadrature((int)p->effects.quadrature, m->n_nodes, node, weight);
   m->cell[0] = -half;
   for (int k = 0; k < m->n_nodes; k++) m->cell[k + 1] = m->cell[k] + half * weight[k];
   for (int k = 0; k < m->n_lanes; k++) {
     const int    used = k < m->n_nodes ? k : m->n_nodes - 1;
     const double station = half * node[used], nominal = trb_cone_radius(flank, station);
-    const double middle = 0.5 * p->pitch_diameter + station * sin(g->roller_axis_angle); /* the roller's axis from the bearing's */
+    const double middle = 0.5 * p->bearing.pitch_diameter + station * sin(g->roller_axis_angle); /* the roller's axis from the bearing's */
     m->station[k] = station;
     for (int race = 0; race < TRB_N_RACES; race++) {
       const double cosine = m->surfaces.race[race].cosine, side = race == TRB_RACE_OUTER ? 1.0 : -1.0;
@@ -119,7 +121,7 @@ static void fill_ends(trb_model *m, const double *drops)
   for (int k = 0; drops != NULL && k < m->n_nodes; k++) added = fmax(added, -drops[k] - profile_drop(m, m->station[k]));
   for (int j = 0; j < m->n_rollers; j++)
     for (int end = 0; end < 2; end++) {
-      const double station = (end - 0.5) * m->params.effective_length;
+      const double station = (end - 0.5) * m->params.roller.effective_length;
       m->end_spheres[2 * j + end] =
           trb_sphere_inscribed(flank, station, trb_cone_radius(flank, station) + 0.5 * m->diameter_deviation[j] + added);
     }
@@ -129,10 +131,10 @@ static void fill_ends(trb_model *m, const double *drops)
 static trb_status check_front_rib(const trb_model *m, trb_message *message)
 {
   const trb_geometry *g = &m->geometry;
-  const double        heights[2] = {m->params.front_rib_low, m->params.front_rib_high};
-  if (m->params.front_rib <= 0.0 || trb_has_cylinders(m)) return TRB_OK;
+  const double        heights[2] = {m->params.rib.front_low, m->params.rib.front_high};
+  if (m->params.effects.front_rib <= 0.0 || trb_has_cylinders(m)) return TRB_OK;
   for (int i = 0; i < 2; i++) {
-    const double rim = trb_cone_radius(&m->surfaces.flank, g->small_end_station - m->params.front_rib_clearance);
+    const double rim = trb_cone_radius(&m->surfaces.flank, g->small_end_station - m->params.rib.front_clearance);
     if (!(rim - heights[i] / cos(g->roller_half_angle) > -g->small_end_radius))
       return trb_fail(message, TRB_ERR_GEOMETRY, "front_rib_high = %g m: the rib would stand beyond the roller's small end (radius %g m)",
                       heights[i], g->small_end_radius);
@@ -144,17 +146,18 @@ static trb_status check_front_rib(const trb_model *m, trb_message *message)
 static void fill_land(trb_model *m)
 {
   const trb_params *p = &m->params;
-  const double      modulus = trb_composite_modulus(p->cage_youngs_modulus, p->cage_poisson_ratio, p->youngs_modulus, p->poisson_ratio);
+  const double      modulus =
+      trb_composite_modulus(p->cage.youngs_modulus, p->cage.poisson_ratio, p->bearing.youngs_modulus, p->bearing.poisson_ratio);
   trb_quadrature(TRB_QUADRATURE_GAUSS, TRB_LAND_STRIPS, m->land_station, m->land_weight);
   for (int k = 0; k < TRB_LAND_STRIPS; k++) {
-    m->land_station[k] *= 0.5 * p->land_width;
-    m->land_weight[k] *= 0.5 * p->land_width;
+    m->land_station[k] *= 0.5 * p->land.width;
+    m->land_weight[k] *= 0.5 * p->land.width;
   }
-  m->guide[TRB_RACE_OUTER] = (trb_guide){p->land_outer_radius, 1};
-  m->guide[TRB_RACE_INNER] = (trb_guide){p->land_inner_radius, 0};
-  m->land_place = p->land_offset - p->cage_offset;
-  m->land_palmgren = exp(trb_line_log_load(0.0, modulus, p->land_width));
-  m->land_film = m->film && p->land_fill > 0.0;
+  m->guide[TRB_RACE_OUTER] = (trb_guide){p->land.outer_radius, 1};
+  m->guide[TRB_RACE_INNER] = (trb_guide){p->land.inner_radius, 0};
+  m->land_place = p->land.offset - p->cage.offset;
+  m->land_palmgren = exp(trb_line_log_load(0.0, modulus, p->land.width));
+  m->land_film = m->film && p->land.fill > 0.0;
 }
 
 static void fill_constants(trb_model *m)
@@ -162,23 +165,25 @@ static void fill_constants(trb_model *m)
   const trb_params   *p = &m->params;
   const trb_geometry *g = &m->geometry;
   m->log_modulus = log(g->effective_modulus);
-  m->log_palmgren = trb_line_log_load(0.0, g->effective_modulus, p->effective_length);
-  m->pocket_palmgren = exp(trb_line_log_load(0.0, g->pocket_modulus, p->effective_length));
-  m->wall_stiffness = p->end_stiffness * (g->pocket_modulus / g->effective_modulus);
+  m->log_palmgren = trb_line_log_load(0.0, g->effective_modulus, p->roller.effective_length);
+  m->pocket_palmgren = exp(trb_line_log_load(0.0, g->pocket_modulus, p->roller.effective_length));
+  m->wall_stiffness = p->roller.end_stiffness * (g->pocket_modulus / g->effective_modulus);
   m->axis_sine = sin(g->roller_axis_angle);
   m->axis_cosine = cos(g->roller_axis_angle);
-  m->log_g = log(trb_max(p->pressure_coefficient, 1e-30) * g->effective_modulus);
-  m->log_viscosity = log(p->viscosity);
+  m->log_g = log(trb_max(p->oil.pressure_coefficient, 1e-30) * g->effective_modulus);
+  m->log_viscosity = log(p->oil.viscosity);
   /* mean speed of the surfaces in pure rolling for a unit of the rings' relative speed */
-  m->replenishment = p->replenishment / (g->outer_race_radius * g->cage_speed_ratio);
-  m->log_thermal = log(p->viscosity * trb_max(p->temperature_coefficient, 1e-30) / p->conductivity);
-  const int dry = p->lubrication == TRB_LUBRICATION_DRY, full = p->lubrication == TRB_LUBRICATION_FULL;
-  m->friction = !(dry && p->dry_friction <= 0.0) && !(full && p->traction == TRB_TRACTION_NONE);
-  m->pocket_friction = dry ? p->dry_friction > 0.0 : !(full && p->traction == TRB_TRACTION_NONE);
-  m->film = !dry && (p->lubrication != TRB_LUBRICATION_BOUNDARY) && (m->friction || p->rolling_resistance > 0.0);
-  m->contact_damping = p->damping == TRB_DAMPING_FILM ? p->film_damping / p->film_damping_depth : p->damping > 0.0 ? p->damping_race : 0.0;
-  m->damping_fade = p->damping == TRB_DAMPING_FILM ? 1.0 / p->film_damping_depth : 0.0;
-  m->pocket_film = dry || p->lubrication == TRB_LUBRICATION_BOUNDARY ? 0.0 : p->pocket_film;
+  m->replenishment = p->effects.replenishment / (g->outer_race_radius * g->cage_speed_ratio);
+  m->log_thermal = log(p->oil.viscosity * trb_max(p->oil.temperature_coefficient, 1e-30) / p->oil.conductivity);
+  const int dry = p->effects.lubrication == TRB_LUBRICATION_DRY, full = p->effects.lubrication == TRB_LUBRICATION_FULL;
+  m->friction = !(dry && p->friction.dry_friction <= 0.0) && !(full && p->effects.traction == TRB_TRACTION_NONE);
+  m->pocket_friction = dry ? p->friction.dry_friction > 0.0 : !(full && p->effects.traction == TRB_TRACTION_NONE);
+  m->film = !dry && (p->effects.lubrication != TRB_LUBRICATION_BOUNDARY) && (m->friction || p->effects.rolling_resistance > 0.0);
+  m->contact_damping = p->effects.damping == TRB_DAMPING_FILM ? p->effects.film_damping / p->effects.film_damping_depth
+                       : p->effects.damping > 0.0             ? p->effects.damping_race
+                                                              : 0.0;
+  m->damping_fade = p->effects.damping == TRB_DAMPING_FILM ? 1.0 / p->effects.film_damping_depth : 0.0;
+  m->pocket_film = dry || p->effects.lubrication == TRB_LUBRICATION_BOUNDARY ? 0.0 : p->pocket.film;
 }
 
 /* Up to the last one whose effect is on. */
@@ -219,34 +224,36 @@ static void allocate(trb_model *m)
 
 static trb_status check_ring(const trb_params *p, trb_message *message)
 {
-  const double values[] = {p->ring_mass,  p->ring_inertia_axial,  p->ring_inertia_transverse,
-                           p->outer_mass, p->outer_inertia_axial, p->outer_inertia_transverse};
+  const double values[] = {p->inner_ring.mass, p->inner_ring.inertia_axial, p->inner_ring.inertia_transverse,
+                           p->outer_ring.mass, p->outer_ring.inertia_axial, p->outer_ring.inertia_transverse};
   const char  *names[] = {"ring_mass",  "ring_inertia_axial",  "ring_inertia_transverse",
                           "outer_mass", "outer_inertia_axial", "outer_inertia_transverse"};
   for (int i = 0; i < 6; i++)
-    if ((i < 3 ? p->ring_free : p->outer_free) > 0.0 && !(values[i] > 0.0))
+    if ((i < 3 ? p->inner_ring.free : p->outer_ring.free) > 0.0 && !(values[i] > 0.0))
       return trb_fail(message, TRB_ERR_INPUT, "%s = %g: must be above 0 for a free ring", names[i], values[i]);
-  if (p->ring_carried > 0.0 && !(p->ring_free > 0.0))
-    return trb_fail(message, TRB_ERR_INPUT, "ring_carried = %g: only a free ring can be part of a shaft", p->ring_carried);
-  if (p->ring_turned > 0.0 && !(p->ring_carried > 0.0))
+  if (p->inner_ring.carried > 0.0 && !(p->inner_ring.free > 0.0))
+    return trb_fail(message, TRB_ERR_INPUT, "ring_carried = %g: only a free ring can be part of a shaft", p->inner_ring.carried);
+  if (p->inner_ring.turned > 0.0 && !(p->inner_ring.carried > 0.0))
     return trb_fail(message, TRB_ERR_INPUT,
-                    "ring_turned = %g: only a ring that is carried can be turned: the first bearing has the shaft's axes", p->ring_turned);
-  if (p->outer_carried > 0.0 && !(p->outer_free > 0.0))
-    return trb_fail(message, TRB_ERR_INPUT, "outer_carried = %g: only an outer ring that moves can be part of a housing", p->outer_carried);
-  if (p->outer_turned > 0.0 && !(p->outer_carried > 0.0))
+                    "ring_turned = %g: only a ring that is carried can be turned: the first bearing has the shaft's axes",
+                    p->inner_ring.turned);
+  if (p->outer_ring.carried > 0.0 && !(p->outer_ring.free > 0.0))
+    return trb_fail(message, TRB_ERR_INPUT, "outer_carried = %g: only an outer ring that moves can be part of a housing",
+                    p->outer_ring.carried);
+  if (p->outer_ring.turned > 0.0 && !(p->outer_ring.carried > 0.0))
     return trb_fail(message, TRB_ERR_INPUT,
                     "outer_turned = %g: only a ring that is carried can be turned: the first bearing has the housing's axes",
-                    p->outer_turned);
+                    p->outer_ring.turned);
   return TRB_OK;
 }
 
 /* What goes together with an elastic cage. */
 static trb_status check_elastic(const trb_params *p, trb_message *message)
 {
-  if (p->cage_modes <= 0.0) return TRB_OK;
-  if (p->with_cage != 1.0 || p->planar > 0.0 || p->guidance != TRB_GUIDANCE_ROLLERS)
+  if (p->cage.n_modes <= 0.0) return TRB_OK;
+  if (p->effects.with_cage != 1.0 || p->effects.planar > 0.0 || p->effects.guidance != TRB_GUIDANCE_ROLLERS)
     return trb_fail(message, TRB_ERR_INPUT, "cage_modes = %g: must be 0 without a cage, in planar motion, and where a land guides the cage",
-                    p->cage_modes);
+                    p->cage.n_modes);
   return TRB_OK;
 }
 
@@ -254,33 +261,33 @@ static void make_rings(trb_model *m)
 {
   const trb_params *p = &m->params;
   const double      plane = m->geometry.centre_plane;
-  m->ring[TRB_RACE_INNER] = (trb_ring_body){.mass = p->ring_mass,
-                                            .inertia_axial = p->ring_inertia_axial,
-                                            .inertia_transverse = p->ring_inertia_transverse,
+  m->ring[TRB_RACE_INNER] = (trb_ring_body){.mass = p->inner_ring.mass,
+                                            .inertia_axial = p->inner_ring.inertia_axial,
+                                            .inertia_transverse = p->inner_ring.inertia_transverse,
                                             .reference = plane,
-                                            .offset = p->ring_offset,
-                                            .unbalance = p->ring_unbalance,
-                                            .unbalance_angle = p->ring_unbalance_angle,
-                                            .damping = p->ring_damping,
-                                            .damping_turns = p->ring_damping_turns,
-                                            .support_radial = p->ring_support_radial,
-                                            .support_axial = p->ring_support_axial,
-                                            .support_tilt = p->ring_support_tilt,
-                                            .support_position = p->ring_support_position,
-                                            .shift = p->ring_shift,
-                                            .sense = p->ring_turned > 0.0 ? -1.0 : 1.0,
-                                            .keeps_speed = p->ring_free < 2.0};
-  m->ring[TRB_RACE_OUTER] = (trb_ring_body){.mass = p->outer_mass,
-                                            .inertia_axial = p->outer_inertia_axial,
-                                            .inertia_transverse = p->outer_inertia_transverse,
-                                            .offset = plane + p->outer_offset,
-                                            .damping = p->outer_damping,
-                                            .damping_turns = p->outer_damping_turns,
-                                            .support_radial = p->outer_support_radial,
-                                            .support_axial = p->outer_support_axial,
-                                            .support_tilt = p->outer_support_tilt,
-                                            .support_position = plane + p->outer_support_position,
-                                            .sense = p->outer_turned > 0.0 ? -1.0 : 1.0,
+                                            .offset = p->inner_ring.offset,
+                                            .unbalance = p->inner_ring.unbalance,
+                                            .unbalance_angle = p->inner_ring.unbalance_angle,
+                                            .damping = p->inner_ring.damping,
+                                            .damping_turns = p->inner_ring.damping_turns,
+                                            .support_radial = p->inner_ring.support_radial,
+                                            .support_axial = p->inner_ring.support_axial,
+                                            .support_tilt = p->inner_ring.support_tilt,
+                                            .support_position = p->inner_ring.support_position,
+                                            .shift = p->inner_ring.shift,
+                                            .sense = p->inner_ring.turned > 0.0 ? -1.0 : 1.0,
+                                            .keeps_speed = p->inner_ring.free < 2.0};
+  m->ring[TRB_RACE_OUTER] = (trb_ring_body){.mass = p->outer_ring.mass,
+                                            .inertia_axial = p->outer_ring.inertia_axial,
+                                            .inertia_transverse = p->outer_ring.inertia_transverse,
+                                            .offset = plane + p->outer_ring.offset,
+                                            .damping = p->outer_ring.damping,
+                                            .damping_turns = p->outer_ring.damping_turns,
+                                            .support_radial = p->outer_ring.support_radial,
+                                            .support_axial = p->outer_ring.support_axial,
+                                            .support_tilt = p->outer_ring.support_tilt,
+                                            .support_position = plane + p->outer_ring.support_position,
+                                            .sense = p->outer_ring.turned > 0.0 ? -1.0 : 1.0,
                                             .keeps_speed = 1,
                                             .is_outer = 1};
 }
@@ -294,13 +301,13 @@ static trb_status fill(trb_model *m, const double *deviation, const trb_face *fa
   make_rings(m);
   trb_surfaces_build(&m->params, &m->geometry, &m->surfaces);
   if ((status = check_front_rib(m, message)) != TRB_OK) return status;
-  m->n_rollers = (int)m->params.n_rollers;
-  m->n_nodes = (int)m->params.n_slices;
+  m->n_rollers = (int)m->params.bearing.n_rollers;
+  m->n_nodes = (int)m->params.effects.n_slices;
   m->n_lanes = (m->n_nodes + TRB_LANE_PAD - 1) / TRB_LANE_PAD * TRB_LANE_PAD;
   allocate(m);
   if (m->memory.lacks) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for %d rollers of %d nodes", m->n_rollers, m->n_nodes);
   for (int j = 0; j < m->n_rollers; j++) {
-    if (!(fabs(deviation[j]) < 0.1 * m->params.roller_diameter))
+    if (!(fabs(deviation[j]) < 0.1 * m->params.roller.diameter))
       return trb_fail(message, TRB_ERR_INPUT, "diameter deviation of roller %d = %g m: must be within a tenth of the diameter", j,
                       deviation[j]);
     m->diameter_deviation[j] = deviation[j];
@@ -321,8 +328,9 @@ trb_status trb_model_create(const trb_params *params, const double *deviation, i
   *model = NULL;
   trb_status status = check_params(params, message);
   if (status != TRB_OK) return status;
-  if (n_deviations != (int)params->n_rollers)
-    return trb_fail(message, TRB_ERR_INPUT, "diameter deviation: %d values given, n_rollers = %g needed", n_deviations, params->n_rollers);
+  if (n_deviations != (int)params->bearing.n_rollers)
+    return trb_fail(message, TRB_ERR_INPUT, "diameter deviation: %d values given, n_rollers = %g needed", n_deviations,
+                    params->bearing.n_rollers);
   trb_model *m = calloc(1, sizeof *m);
   if (m == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for a model");
   m->params = *params;
@@ -352,8 +360,8 @@ trb_status trb_model_set_drops(trb_model *m, const double *rows, int n_rows, int
 trb_status trb_model_set_modes(trb_model *m, const double *rows, int n_modes, int n_columns, trb_message *message)
 {
   trb_modes *to = &m->modes;
-  if (n_modes != (int)m->params.cage_modes)
-    return trb_fail(message, TRB_ERR_INPUT, "cage_modes = %g: %d modes are given", m->params.cage_modes, n_modes);
+  if (n_modes != (int)m->params.cage.n_modes)
+    return trb_fail(message, TRB_ERR_INPUT, "cage_modes = %g: %d modes are given", m->params.cage.n_modes, n_modes);
   if (n_modes <= 0) return TRB_OK;
   const trb_status status =
       trb_modes_read(to, &m->memory, m->n_rollers * m->n_slots, m->first_face[m->n_rollers], rows, n_modes, n_columns, message);

@@ -17,15 +17,15 @@
   F(X, front_rib,        TAKES,  1, "at the front rib; of cylindrical rollers at all ribs against the ends towards -z") \
   F(X, pocket,           TAKES,  1, "by friction in the pockets") \
   F(X, damping,          TAKES,  1, "by normal damping") \
-  F(X, drag,             TAKES,  p->oil_fill > 0.0, "by drag of the oil on rollers and cage") \
-  F(X, pocket_film,      TAKES,  p->pocket_film > 0.0, "in the oil films between rollers and pockets")
+  F(X, drag,             TAKES,  p->effects.oil_fill > 0.0, "by drag of the oil on rollers and cage") \
+  F(X, pocket_film,      TAKES,  p->pocket.film > 0.0, "in the oil films between rollers and pockets")
 
 /* Of pairs without one. */
 #define TRB_HUB_LOSSES(F, X) \
-  F(X, land_film, TAKES, p->guidance != TRB_GUIDANCE_ROLLERS, "in the oil film between cage and land") \
-  F(X, land,      TAKES, p->guidance != TRB_GUIDANCE_ROLLERS, "by friction of the cage on the land") \
-  F(X, support,   TAKES, p->ring_free > 0.0 || p->outer_free > 0.0, "by damping between free rings and the surroundings") \
-  F(X, vibration, TAKES, p->cage_modes > 0.0, "by damping of the cage's own vibrations")
+  F(X, land_film, TAKES, p->effects.guidance != TRB_GUIDANCE_ROLLERS, "in the oil film between cage and land") \
+  F(X, land,      TAKES, p->effects.guidance != TRB_GUIDANCE_ROLLERS, "by friction of the cage on the land") \
+  F(X, support,   TAKES, p->inner_ring.free > 0.0 || p->outer_ring.free > 0.0, "by damping between free rings and the surroundings") \
+  F(X, vibration, TAKES, p->cage.n_modes > 0.0, "by damping of the cage's own vibrations")
 
 #define TRB_LOSSES(F, X) TRB_ROLLER_LOSSES(F, X) TRB_HUB_LOSSES(F, X)
 

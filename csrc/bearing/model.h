@@ -151,10 +151,10 @@ typedef struct trb_model {
 } trb_model;
 
 /* Whether rollers and raceways are cylinders. */
-static inline int trb_has_cylinders(const trb_model *model) { return model->params.cup_half_angle == 0.0; }
+static inline int trb_has_cylinders(const trb_model *model) { return model->params.bearing.cup_half_angle == 0.0; }
 
 /* Whether there is a cage with pockets: not where rollers are alone, or a spacer holds them. */
-static inline int trb_has_cage(const trb_model *model) { return model->params.with_cage == 1.0; }
+static inline int trb_has_cage(const trb_model *model) { return model->params.effects.with_cage == 1.0; }
 
 /* Coefficient of the normal damping of a contact with a ring at an interference, s/m (docs/theory/contacts.md#normal-damping). */
 static inline double trb_contact_damping(const trb_model *model, double interference)
@@ -168,7 +168,7 @@ double trb_chain_length(const trb_model *model);
 /* A checked, immutable copy of everything given. deviation: a roller's diameter over nominal, n_rollers values; faces: n_faces rows. */
 trb_status trb_model_create(const trb_params *params, const double *deviation, int n_deviations, const trb_face *faces, int n_faces,
                             trb_model **model, trb_message *message);
-/* Gives a new model, whose params.cage_modes says how many, the modes of its cage: as many rows of TRB_MODE_shapes + 6 n_rollers n_slots
+/* Gives a new model, whose params.cage.n_modes says how many, the modes of its cage: as many rows of TRB_MODE_shapes + 6 n_rollers n_slots
  * numbers. */
 trb_status trb_model_set_modes(trb_model *model, const double *rows, int n_modes, int n_columns, trb_message *message);
 /* Gives a new model the form of its surfaces: rows of TRB_FORM_depth + 2 n_nodes numbers (bearing/form.h); none: all surfaces have their true

@@ -47,7 +47,7 @@ static int face_in_pocket(const trb_face *f, int pocket) { return f->pocket[0] <
 /* Faces that the scene's effects leave out are not in the model, so no loop sees them. */
 static int face_is_on(const trb_model *m, const trb_face *f)
 {
-  return trb_has_cage(m) && (f->part[0] == TRB_PART_FLANK ? m->params.pocket_bars > 0.0 : m->params.pocket_ends > 0.0);
+  return trb_has_cage(m) && (f->part[0] == TRB_PART_FLANK ? m->params.pocket.bars > 0.0 : m->params.pocket.ends > 0.0);
 }
 
 static void measure(trb_pocket_face *f)
@@ -143,11 +143,11 @@ trb_status trb_pockets_fill_faces(trb_model *m, const trb_face *faces, int n_fac
 void trb_pockets_place(trb_model *m)
 {
   const trb_geometry *g = &m->geometry;
-  const double        sm = sin(g->roller_axis_angle), cm = cos(g->roller_axis_angle), radius = 0.5 * m->params.pitch_diameter;
+  const double        sm = sin(g->roller_axis_angle), cm = cos(g->roller_axis_angle), radius = 0.5 * m->params.bearing.pitch_diameter;
   for (int j = 0; j < m->n_rollers; j++) {
     const double angle = 2.0 * TRB_PI * j / m->n_rollers, cosine = cos(angle), sine = sin(angle);
     m->nominal_angle[j] = (trb_angle){cosine, sine};
     m->pocket_axes[j] = (trb_frame){{cm * cosine, cm * sine, -sm}, {-sine, cosine, 0.0}, {sm * cosine, sm * sine, cm}};
-    m->pocket_origin[j] = trb_v(radius * cosine, radius * sine, -m->params.cage_offset);
+    m->pocket_origin[j] = trb_v(radius * cosine, radius * sine, -m->params.cage.offset);
   }
 }

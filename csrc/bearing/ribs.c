@@ -16,15 +16,15 @@ static trb_status fill_rib(trb_model *m, int race, int end, trb_message *message
   *rib = (trb_rib){.face = trb_rib_face(&place, end),
                    .race = m->surfaces.race[race],
                    .end = m->surfaces.end[end],
-                   .edge_low = p->rib_edge_low,
-                   .edge_high = p->rib_edge_high,
+                   .edge_low = p->rib.edge_low,
+                   .edge_high = p->rib.edge_high,
                    .stiffness = place.stiffness,
                    .semi_axis_rolling = place.semi_rolling,
                    .semi_axis_across = place.semi_across,
                    .rx = place.rx,
-                   .film_shape = p->rib_film == TRB_RIB_FILM_NEEDLE ? trb_film_needle_shape(shape) : trb_film_point_shape(shape),
-                   .film_rigid = p->rib_film > 0.0 ? 0.0 : trb_film_point_rigid_factor(shape),
-                   .roughness = p->roughness_rib};
+                   .film_shape = p->effects.rib_film == TRB_RIB_FILM_NEEDLE ? trb_film_needle_shape(shape) : trb_film_point_shape(shape),
+                   .film_rigid = p->effects.rib_film > 0.0 ? 0.0 : trb_film_point_rigid_factor(shape),
+                   .roughness = p->roughness.rib};
   if (race == TRB_RACE_OUTER) rib->face.place += g->centre_plane; /* places of the outer ring are from the origin */
   return TRB_OK;
 }
@@ -43,5 +43,5 @@ trb_status trb_ribs_fill(trb_model *m, trb_message *message)
 
 int trb_between_ribs(const trb_params *p)
 {
-  return (p->back_rib > 0.0 || p->outer_rib > 0.0) && (p->front_rib > 0.0 || p->outer_front_rib > 0.0);
+  return (p->effects.back_rib > 0.0 || p->rib.outer > 0.0) && (p->effects.front_rib > 0.0 || p->rib.outer_front > 0.0);
 }

@@ -8,10 +8,10 @@
 trb_cone trb_raceway_cone(const trb_params *params, const trb_geometry *geometry, int race, double place)
 {
   const double side = race == TRB_RACE_OUTER ? 1.0 : -1.0,
-               angle = race == TRB_RACE_OUTER ? params->cup_half_angle : geometry->cone_half_angle;
-  const double radius = 0.5 * params->pitch_diameter +
-                        side * 0.5 * params->roller_diameter * cos(geometry->roller_half_angle) / cos(angle) +
-                        side * 0.25 * params->radial_clearance;
+               angle = race == TRB_RACE_OUTER ? params->bearing.cup_half_angle : geometry->cone_half_angle;
+  const double radius = 0.5 * params->bearing.pitch_diameter +
+                        side * 0.5 * params->roller.diameter * cos(geometry->roller_half_angle) / cos(angle) +
+                        side * 0.25 * params->bearing.radial_clearance;
   return trb_cone_of(place, radius, angle, side);
 }
 
@@ -25,11 +25,11 @@ trb_cone trb_rib_face(const trb_rib_place *place, int end)
 /* Edges of the front rib: circles about the inner ring's axis on the face that is parallel to the nominal roller's small end. */
 static void place_front_rib(const trb_params *p, const trb_geometry *g, trb_surfaces *s)
 {
-  const double heights[2] = {p->front_rib_low, p->front_rib_high}, am = g->roller_axis_angle;
-  const double along = g->small_end_station - p->front_rib_clearance; /* of the face, from mid length */
+  const double heights[2] = {p->rib.front_low, p->rib.front_high}, am = g->roller_axis_angle;
+  const double along = g->small_end_station - p->rib.front_clearance; /* of the face, from mid length */
   for (int i = 0; i < 2; i++) {
     const double below = trb_cone_radius(&s->flank, along) - heights[i] / cos(g->roller_half_angle); /* the roller's axis */
-    s->front_rib[i].radius = 0.5 * p->pitch_diameter + along * sin(am) - below * cos(am);
+    s->front_rib[i].radius = 0.5 * p->bearing.pitch_diameter + along * sin(am) - below * cos(am);
     s->front_rib[i].place = along * cos(am) + below * sin(am);
   }
 }
@@ -39,7 +39,7 @@ void trb_surfaces_build(const trb_params *params, const trb_geometry *geometry, 
   const trb_geometry *g = geometry;
   surfaces->race[TRB_RACE_OUTER] = trb_raceway_cone(params, g, TRB_RACE_OUTER, g->centre_plane);
   surfaces->race[TRB_RACE_INNER] = trb_raceway_cone(params, g, TRB_RACE_INNER, 0.0);
-  surfaces->flank = trb_cone_of(-g->roller_mass_offset, 0.5 * params->roller_diameter, g->roller_half_angle, -1.0);
+  surfaces->flank = trb_cone_of(-g->roller_mass_offset, 0.5 * params->roller.diameter, g->roller_half_angle, -1.0);
   for (int end = 0; end < TRB_N_ENDS; end++)
     surfaces->end[end] = (trb_sphere){trb_end_sphere(g, end) - g->roller_mass_offset, g->sphere_radius};
   surfaces->small_end = g->small_end_station - g->roller_mass_offset;

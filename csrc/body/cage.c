@@ -8,7 +8,7 @@ void trb_cage_pose(const trb_model *m, const trb_body *body, const trb_drive *dr
 {
   (void)body;
   const trb_angle turn = trb_angle_of(y[TRB_CAGE_psi]);
-  pose->x = trb_v(y[TRB_CAGE_x], y[TRB_CAGE_y], m->geometry.centre_plane + m->params.cage_offset + y[TRB_CAGE_z]);
+  pose->x = trb_v(y[TRB_CAGE_x], y[TRB_CAGE_y], m->geometry.centre_plane + m->params.cage.offset + y[TRB_CAGE_z]);
   pose->frame = trb_tilted_frame(y[TRB_CAGE_skew], y[TRB_CAGE_tilt]);
   pose->body.n = trb_add(trb_scale(turn.cosine, pose->frame.n), trb_scale(turn.sine, pose->frame.t));
   pose->body.t = trb_sub(trb_scale(turn.cosine, pose->frame.t), trb_scale(turn.sine, pose->frame.n));
@@ -23,10 +23,10 @@ void trb_cage_rates(const trb_model *m, const trb_body *body, const trb_drive *d
 {
   (void)body;
   memset(rates, 0, TRB_CAGE_SIZE * sizeof *rates);
-  if (m->params.with_cage <= 0.0) return;
-  const double         w = drive->frame_speed, per_mass = 1.0 / m->params.cage_mass;
+  if (m->params.effects.with_cage <= 0.0) return;
+  const double         w = drive->frame_speed, per_mass = 1.0 / m->params.cage.mass;
   const trb_vec3       g = trb_has_gravity(drive) ? trb_gravity_in(drive, 1.0, 0.0) : trb_v(0, 0, 0);
-  const trb_turn_rates turn = trb_euler(&c->frame, c->omega_frame, w, m->params.cage_inertia_transverse, m->params.cage_inertia_axial,
+  const trb_turn_rates turn = trb_euler(&c->frame, c->omega_frame, w, m->params.cage.inertia_transverse, m->params.cage.inertia_axial,
                                         trb_to_frame(&c->frame, load->moment));
   rates[TRB_CAGE_x] = c->v.x + w * y[TRB_CAGE_y];
   rates[TRB_CAGE_y] = c->v.y - w * y[TRB_CAGE_x];
@@ -34,7 +34,7 @@ void trb_cage_rates(const trb_model *m, const trb_body *body, const trb_drive *d
   rates[TRB_CAGE_v_x] = per_mass * load->force.x + g.x + w * c->v.y;
   rates[TRB_CAGE_v_y] = per_mass * load->force.y + g.y - w * c->v.x;
   rates[TRB_CAGE_omega_a] = turn.spin.z - drive->frame_rate;
-  if (m->params.planar > 0.0) return;
+  if (m->params.effects.planar > 0.0) return;
   rates[TRB_CAGE_z] = c->v.z;
   rates[TRB_CAGE_skew] = turn.skew;
   rates[TRB_CAGE_tilt] = turn.tilt;
@@ -64,14 +64,14 @@ trb_rigid trb_cage_motion(const trb_rigid_pose *cage, int coordinate)
 double trb_cage_mass(const trb_model *m, const trb_body *body)
 {
   (void)body;
-  return m->params.with_cage > 0.0 ? m->params.cage_mass : 0.0;
+  return m->params.effects.with_cage > 0.0 ? m->params.cage.mass : 0.0;
 }
 
 double trb_cage_kinetic(const trb_model *m, const trb_body *body, const trb_rigid_pose *c)
 {
   (void)body;
-  if (m->params.with_cage <= 0.0) return 0.0;
-  return trb_kinetic(m->params.cage_mass, m->params.cage_inertia_axial, m->params.cage_inertia_transverse, c->v, c->omega_frame);
+  if (m->params.effects.with_cage <= 0.0) return 0.0;
+  return trb_kinetic(m->params.cage.mass, m->params.cage.inertia_axial, m->params.cage.inertia_transverse, c->v, c->omega_frame);
 }
 
 static const trb_coordinate coordinates[TRB_CAGE_SIZE] = {TRB_CAGE_STATE(TRB_COORDINATE)};
@@ -94,7 +94,7 @@ static void spacer_rates(const trb_model *m, const trb_body *body, const trb_dri
   (void)y;
   memset(rates, 0, TRB_CAGE_SIZE * sizeof *rates);
   rates[TRB_CAGE_psi] = pose->omega_frame.z - drive->frame_speed;
-  rates[TRB_CAGE_omega_a] = load->moment.z / m->params.cage_inertia_axial - drive->frame_rate;
+  rates[TRB_CAGE_omega_a] = load->moment.z / m->params.cage.inertia_axial - drive->frame_rate;
 }
 
 /* What guides it carries its weight. */
@@ -108,10 +108,10 @@ static double spacer_mass(const trb_model *m, const trb_body *body)
 static double spacer_kinetic(const trb_model *m, const trb_body *body, const trb_rigid_pose *pose)
 {
   (void)body;
-  return 0.5 * m->params.cage_inertia_axial * pose->omega_frame.z * pose->omega_frame.z;
+  return 0.5 * m->params.cage.inertia_axial * pose->omega_frame.z * pose->omega_frame.z;
 }
 
-static double spacer_inertia(const trb_model *m) { return m->params.cage_inertia_axial; }
+static double spacer_inertia(const trb_model *m) { return m->params.cage.inertia_axial; }
 
 const trb_body_kind trb_body_spacer = {.name = "spacer",
                                        .size = TRB_CAGE_SIZE,

@@ -166,7 +166,7 @@ static void rates_of(const trb_model *m, const trb_body *body, const trb_drive *
     rates[TRB_FREE_RING_psi] = y[TRB_FREE_RING_omega_a] - turn.frame_a;
     rates[TRB_FREE_RING_omega_a] = turn.spin.z + drive->torque / own->inertia_axial - drive->shaft_rate;
   }
-  if (m->params.planar > 0.0) return;
+  if (m->params.effects.planar > 0.0) return;
   rates[TRB_FREE_RING_z] = y[TRB_FREE_RING_v_z];
   rates[TRB_FREE_RING_skew] = turn.skew;
   rates[TRB_FREE_RING_tilt] = turn.tilt;

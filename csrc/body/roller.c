@@ -26,7 +26,7 @@ void trb_roller_pose_unpack(const trb_model *m, const trb_drive *drive, int roll
   pose->orbit_speed = pose->v.y / pose->radius;
   pose->omega_frame = trb_v(rolling.omega_n + y[TRB_ROLLER_omega_n], y[TRB_ROLLER_omega_t], rolling.omega_a + y[TRB_ROLLER_omega_a]);
   pose->omega = trb_from_frame(&pose->frame, pose->omega_frame);
-  if (m->params.planar <= 0.0) return;
+  if (m->params.effects.planar <= 0.0) return;
   /* frozen tilts: the transverse angular velocity is the orbit's */
   const trb_frame *f = &pose->frame;
   pose->omega_frame.x = pose->orbit_speed * f->n.z;
@@ -44,7 +44,7 @@ static double orbit_inertia(const trb_geometry *g, const trb_roller_pose *r)
 double trb_roller_orbit_mass(const trb_model *m, const trb_drive *drive, int roller, const double *y)
 {
   trb_roller_pose pose;
-  if (m->params.planar <= 0.0) return m->geometry.roller_mass;
+  if (m->params.effects.planar <= 0.0) return m->geometry.roller_mass;
   trb_roller_pose_unpack(m, drive, roller, y, &pose);
   return m->geometry.roller_mass + orbit_inertia(&m->geometry, &pose);
 }
@@ -77,7 +77,7 @@ double trb_roller_inertia(const trb_model *m, const trb_drive *drive, const trb_
   rates[TRB_ROLLER_omega_n] = turn.spin.x - rolling_rate.omega_n;
   rates[TRB_ROLLER_omega_t] = turn.spin.y;
   rates[TRB_ROLLER_omega_a] = turn.spin.z - rolling_rate.omega_a;
-  if (m->params.planar > 0.0) freeze_roller(g, r, rolling_rate.v_t, fall.y, rates);
+  if (m->params.effects.planar > 0.0) freeze_roller(g, r, rolling_rate.v_t, fall.y, rates);
   const double frame_a = r->orbit_speed * r->frame.a.z + rates[TRB_ROLLER_tilt] * r->frame.a.y;
   *spin = r->omega_frame.z - frame_a + g->roller_spin_ratio * drive->rolling_speed;
   return heavy ? g->roller_mass * trb_dot(fall, r->v) : 0.0;
@@ -90,7 +90,7 @@ void trb_roller_response(const trb_model *m, const trb_roller_pose *r, const trb
   const double        per_mass = 1.0 / g->roller_mass, per_transverse = 1.0 / g->roller_inertia_transverse;
   rates[TRB_ROLLER_v_r] += per_mass * load->force.x;
   rates[TRB_ROLLER_omega_a] += moment.z / g->roller_inertia_axial;
-  if (m->params.planar > 0.0) {
+  if (m->params.effects.planar > 0.0) {
     rates[TRB_ROLLER_v_t] += (load->force.y + r->frame.n.z * moment.x / r->radius) / (g->roller_mass + orbit_inertia(g, r));
   } else {
     rates[TRB_ROLLER_v_t] += per_mass * load->force.y;

@@ -27,7 +27,7 @@ typedef struct trb_arms {
 } trb_arms;
 
 /* Displacements and gaps up to which arms are proven, m. */
-static inline double trb_bound_play(const trb_model *m) { return 0.5 * m->params.roller_diameter; }
+static inline double trb_bound_play(const trb_model *m) { return 0.5 * m->params.roller.diameter; }
 
 /* Arms between a cone of a ring and spheres of a roller, with centres between two stations of its axis, from its centre of mass. axial: distance
  * of these centres from the ring's reference point along the axis, at most, m. */

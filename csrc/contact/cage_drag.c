@@ -10,10 +10,10 @@ static void between(const trb_model *m, const trb_pair *pair, const trb_instant 
 {
   const trb_params     *p = &m->params;
   const trb_rigid_pose *cage = &at->bodies[pair->a].pose;
-  const double          speed = trb_dot(cage->omega, cage->frame.a), viscosity = p->viscosity / p->oil_density;
-  const double          density = p->oil_fill * p->oil_density;
-  const double          per = trb_disc_over_speed(density, viscosity, p->cage_face_outer, fabs(speed)) -
-                              trb_disc_over_speed(density, viscosity, p->cage_face_inner, fabs(speed));
+  const double          speed = trb_dot(cage->omega, cage->frame.a), viscosity = p->oil.viscosity / p->oil.density;
+  const double          density = p->effects.oil_fill * p->oil.density;
+  const double          per = trb_disc_over_speed(density, viscosity, p->cage.face_outer, fabs(speed)) -
+                              trb_disc_over_speed(density, viscosity, p->cage.face_inner, fabs(speed));
   (void)detail;
   counters->drag_cages++;
   load->on_a.moment = trb_scale(-per * speed, cage->frame.a);

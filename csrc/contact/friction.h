@@ -25,7 +25,7 @@ static inline trb_touch trb_touching(trb_vec3 roller_velocity, trb_vec3 other_ve
 
 static inline double trb_coulomb_coefficient(const trb_params *p, double speed)
 {
-  return p->dry_friction * speed / sqrt(speed * speed + p->coulomb_speed * p->coulomb_speed);
+  return p->friction.dry_friction * speed / sqrt(speed * speed + p->friction.coulomb_speed * p->friction.coulomb_speed);
 }
 
 /* (6) with the slide-roll ratio of surfaces that do not roll (docs/theory/contacts.md#bounded-faces-of-pockets), or Coulomb's law in a
@@ -33,9 +33,9 @@ static inline double trb_coulomb_coefficient(const trb_params *p, double speed)
 static inline double trb_sliding_coefficient(const trb_model *m, double speed)
 {
   const trb_params *p = &m->params;
-  if (p->lubrication == TRB_LUBRICATION_DRY) return trb_coulomb_coefficient(p, speed);
-  return trb_friction_boundary(trb_slide_roll_cage(speed, p->cage_entrainment_speed), p->boundary_limit, p->boundary_slope,
-                               p->boundary_decay);
+  if (p->effects.lubrication == TRB_LUBRICATION_DRY) return trb_coulomb_coefficient(p, speed);
+  return trb_friction_boundary(trb_slide_roll_cage(speed, p->friction.cage_entrainment_speed), p->friction.boundary_limit,
+                               p->friction.boundary_slope, p->friction.boundary_decay);
 }
 
 /* Normal damping, never pulling (docs/theory/contacts.md#normal-damping). */
@@ -63,6 +63,6 @@ static inline trb_push trb_push_at(const trb_model *m, const trb_touch *touch, t
 }
 
 /* Its coefficient in pockets and at the land. */
-static inline double trb_cage_damping(const trb_model *m) { return m->params.damping > 0.0 ? m->params.damping_cage : 0.0; }
+static inline double trb_cage_damping(const trb_model *m) { return m->params.effects.damping > 0.0 ? m->params.pocket.damping : 0.0; }
 
 #endif

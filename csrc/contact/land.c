@@ -51,23 +51,23 @@ static void act(meeting *w, trb_vec3 at, trb_vec3 force, double couple, trb_mech
 }
 
 /* Largest distance of the axes of a strip at which nothing touches. */
-static double room(const trb_params *p) { return p->land_clearance - p->land_contact_film; }
+static double room(const trb_params *p) { return p->land.clearance - p->land.contact_film; }
 
 static void film_on_strip(meeting *w, double station, double width)
 {
   const trb_params    *p = &w->m->params;
   const trb_land_strip s = strip_at(w, station);
-  const double         c = p->land_clearance, held = s.size > room(p) ? room(p) / s.size : 1.0, half = 0.5 * p->land_fill * p->land_width;
+  const double         c = p->land.clearance, held = s.size > room(p) ? room(p) / s.size : 1.0, half = 0.5 * p->land.fill * p->land.width;
   const trb_vec3       at = trb_axpy(s.x, -0.5, s.apart), apart = trb_scale(held / c, s.apart);
   const trb_vec3       relative = trb_sub(cage_velocity(w, at), ring_velocity(w, at));
   const trb_vec3       v = trb_axpy(relative, -trb_dot(relative, w->ring.axis), w->ring.axis), around = trb_cross(w->ring.axis, v);
   const double         speed = trb_norm(v), turning = trb_dot(trb_sub(w->ring.omega, w->cage->omega), w->ring.axis);
-  const double         shear = trb_journal_shear(p->viscosity, w->radius, width, c, trb_norm(apart));
+  const double         shear = trb_journal_shear(p->oil.viscosity, w->radius, width, c, trb_norm(apart));
   trb_vec3             force = {0, 0, 0};
   w->counters->land_films++;
   if (speed > 0.0) {
     const trb_journal_film film = trb_journal_short(trb_dot(apart, v) / speed, trb_dot(apart, around) / speed);
-    const double           scale = -6.0 * p->viscosity * w->radius * width * (half * half - station * station) / (c * c * c);
+    const double           scale = -6.0 * p->oil.viscosity * w->radius * width * (half * half - station * station) / (c * c * c);
     force = trb_axpy(trb_scale(scale * film.along, v), scale * film.across, around);
   }
   act(w, at, force, shear * turning, TRB_BY_FILM);
@@ -81,7 +81,7 @@ static void contact_on_strip(meeting *w, double station, double width)
   const trb_params    *p = &m->params;
   const trb_land_strip s = strip_at(w, station);
   const double         d = s.size - room(p);
-  w->seen.gap = trb_min(w->seen.gap, p->land_clearance - s.size);
+  w->seen.gap = trb_min(w->seen.gap, p->land.clearance - s.size);
   if (!(d > 0.0)) return;
   w->counters->land_contacts++;
   const trb_vec3  normal = trb_scale(1.0 / s.size, s.apart), at = trb_land_nearest(&s, normal, w->radius, w->inside);
@@ -114,11 +114,11 @@ static void meet(const trb_model *m, const trb_pair *pair, const trb_instant *at
   w.load = load;
   for (int k = 0; k < TRB_LAND_STRIPS; k++) {
     const double station = m->land_station[k], width = m->land_weight[k];
-    if (m->land_film) film_on_strip(&w, p->land_fill * station, p->land_fill * width);
+    if (m->land_film) film_on_strip(&w, p->land.fill * station, p->land.fill * width);
     contact_on_strip(&w, station, width);
   }
   if (detail == NULL) return;
-  w.seen.eccentricity = strip_at(&w, 0.0).size / p->land_clearance;
+  w.seen.eccentricity = strip_at(&w, 0.0).size / p->land.clearance;
   w.seen.film_force = trb_norm(w.film);
   w.seen.contact_force = trb_norm(w.contact);
   w.seen.force = trb_norm(trb_add(w.film, w.contact));
@@ -130,8 +130,8 @@ static void meet(const trb_model *m, const trb_pair *pair, const trb_instant *at
 static trb_approach approach_of(const trb_model *m, const trb_pair *pair, const trb_instant *at)
 {
   const meeting w = meeting_of(m, pair, at);
-  const double  stiffness = m->land_palmgren * m->params.land_width * pow(1e-6, TRB_PALMGREN_EXPONENT - 1.0);
-  trb_approach  found = {.left = INFINITY, .rise = sqrt(m->params.cage_mass / stiffness)};
+  const double  stiffness = m->land_palmgren * m->params.land.width * pow(1e-6, TRB_PALMGREN_EXPONENT - 1.0);
+  trb_approach  found = {.left = INFINITY, .rise = sqrt(m->params.cage.mass / stiffness)};
   for (int k = 0; k < TRB_LAND_STRIPS; k++) {
     const trb_land_strip s = strip_at(&w, m->land_station[k]);
     const double         left = room(&m->params) - s.size;

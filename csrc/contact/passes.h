@@ -34,7 +34,7 @@ typedef struct trb_pass_kind {
 /* Mean and sliding speed, slide-roll ratio; smooth at zero. */
 static inline void pass_speeds(const trb_model *m, int n, trb_lanes *l)
 {
-  const double floor2 = m->params.speed_floor * m->params.speed_floor;
+  const double floor2 = m->params.friction.speed_floor * m->params.friction.speed_floor;
   TRB_PADDED(n);
   TRB_LANES for (int i = 0; i < n; i++)
   {
@@ -50,9 +50,9 @@ static inline void pass_speeds(const trb_model *m, int n, trb_lanes *l)
 
 static inline void pass_thermal(const trb_model *m, int n, trb_lanes *l)
 {
-  const double base = m->log_thermal, modulus = m->geometry.effective_modulus, floor = m->params.thermal_floor;
+  const double base = m->log_thermal, modulus = m->geometry.effective_modulus, floor = m->params.friction.thermal_floor;
   TRB_PADDED(n);
-  if (m->params.thermal == TRB_THERMAL_AIHARA) {
+  if (m->params.effects.thermal == TRB_THERMAL_AIHARA) {
     TRB_LANES for (int i = 0; i < n; i++) l->thermal_factor[i] = trb_film_thermal_aihara(base + 2.0 * l->log_u[i]);
     return;
   }
@@ -63,7 +63,7 @@ static inline void pass_thermal(const trb_model *m, int n, trb_lanes *l)
 /* (3), and (11) at the rib, with a starvation factor. */
 static inline void pass_film_parameter(const trb_model *m, const trb_pass_kind *kind, int n, trb_lanes *l)
 {
-  const double starvation = m->params.starvation_factor, per_roughness = 1.0 / kind->roughness;
+  const double starvation = m->params.effects.starvation_factor, per_roughness = 1.0 / kind->roughness;
   TRB_PADDED(n);
   TRB_LANES for (int i = 0; i < n; i++)
   {
@@ -88,12 +88,13 @@ static inline void pass_film_parameter(const trb_model *m, const trb_pass_kind *
 static inline void pass_muraki_kimura(const trb_model *m, const trb_pass_kind *kind, int n, trb_lanes *l)
 {
   const trb_params *p = &m->params;
-  const double      viscosity = p->viscosity, tau0 = p->eyring_stress, temperature = p->temperature, floor = p->shear_modulus_floor;
-  const double      alpha = p->pressure_coefficient, cap = p->viscosity_exponent_cap, mean_share = kind->mean_pressure;
-  if (p->viscosity_law == TRB_VISCOSITY_DICKE) {
-    const double at = p->dicke_a + p->dicke_b * temperature, ct = p->dicke_c + p->dicke_d * temperature;
+  const double      viscosity = p->oil.viscosity, tau0 = p->oil.eyring_stress, temperature = p->oil.temperature,
+                    floor = p->oil.shear_modulus_floor;
+  const double      alpha = p->oil.pressure_coefficient, cap = p->oil.viscosity_exponent_cap, mean_share = kind->mean_pressure;
+  if (p->oil.viscosity_law == TRB_VISCOSITY_DICKE) {
+    const double at = p->oil.dicke_a + p->oil.dicke_b * temperature, ct = p->oil.dicke_c + p->oil.dicke_d * temperature;
     TRB_TRACTION_LOOP(trb_viscosity_dicke(mean_pressure, at, ct))
-  } else if (p->viscosity_law == TRB_VISCOSITY_ROELANDS) {
+  } else if (p->oil.viscosity_law == TRB_VISCOSITY_ROELANDS) {
     const double log_viscosity = m->log_viscosity;
     TRB_TRACTION_LOOP(trb_viscosity_roelands(mean_pressure, alpha, log_viscosity, cap))
   } else {
@@ -103,7 +104,7 @@ static inline void pass_muraki_kimura(const trb_model *m, const trb_pass_kind *k
 
 static inline void pass_coulomb(const trb_model *m, int n, trb_lanes *l, double *restrict coefficient)
 {
-  const double mu = m->params.dry_friction, turn = m->params.coulomb_speed * m->params.coulomb_speed;
+  const double mu = m->params.friction.dry_friction, turn = m->params.friction.coulomb_speed * m->params.friction.coulomb_speed;
   TRB_PADDED(n);
   TRB_LANES for (int i = 0; i < n; i++)
   {
@@ -115,7 +116,7 @@ static inline void pass_coulomb(const trb_model *m, int n, trb_lanes *l, double 
 /* (6) boundary friction. */
 static inline void pass_boundary(const trb_model *m, const trb_pass_kind *kind, int n, trb_lanes *l)
 {
-  const double limit = kind->boundary_limit, slope = m->params.boundary_slope, decay = m->params.boundary_decay;
+  const double limit = kind->boundary_limit, slope = m->params.friction.boundary_slope, decay = m->params.friction.boundary_decay;
   TRB_PADDED(n);
   TRB_LANES for (int i = 0; i < n; i++) l->boundary_coefficient[i] = trb_friction_boundary(l->slide_roll[i], limit, slope, decay);
 }
@@ -140,8 +141,9 @@ static inline double thinnest(int n, const trb_lanes *l)
 /* (2) mixed friction, or with an exponential share of the asperities. */
 static inline void pass_mix(const trb_model *m, const trb_pass_kind *kind, int n, trb_lanes *l)
 {
-  const double low = m->params.lambda_boundary, high = m->params.lambda_full, b = kind->asperity_factor, c = kind->asperity_exponent;
-  if (m->params.mixed_law > 0.0) {
+  const double low = m->params.friction.lambda_boundary, high = m->params.friction.lambda_full, b = kind->asperity_factor,
+               c = kind->asperity_exponent;
+  if (m->params.effects.mixed_law > 0.0) {
     TRB_MIX_LOOP(trb_asperity_share(l->film_parameter[i], b, c))
   } else {
     TRB_MIX_LOOP(trb_boundary_share(l->film_parameter[i], low, high))
@@ -157,28 +159,28 @@ static inline void copy_lanes(int n, const double *restrict from, double *restri
 static inline void pass_friction(const trb_model *m, const trb_pass_kind *kind, int n, trb_lanes *l, trb_counters *counters)
 {
   const trb_params *p = &m->params;
-  if (p->lubrication == TRB_LUBRICATION_DRY) {
+  if (p->effects.lubrication == TRB_LUBRICATION_DRY) {
     pass_coulomb(m, n, l, l->friction_coefficient);
     counters->coulomb_nodes += n;
     return;
   }
-  if (p->lubrication == TRB_LUBRICATION_BOUNDARY) {
+  if (p->effects.lubrication == TRB_LUBRICATION_BOUNDARY) {
     pass_boundary(m, kind, n, l);
     counters->boundary_nodes += n;
     copy_lanes(n, l->boundary_coefficient, l->friction_coefficient);
     return;
   }
-  if (p->traction == TRB_TRACTION_MURAKI_KIMURA) {
+  if (p->effects.traction == TRB_TRACTION_MURAKI_KIMURA) {
     pass_muraki_kimura(m, kind, n, l);
     counters->traction_nodes += n;
-  } else if (p->traction == TRB_TRACTION_COULOMB) {
+  } else if (p->effects.traction == TRB_TRACTION_COULOMB) {
     pass_coulomb(m, n, l, l->traction_coefficient);
     counters->coulomb_nodes += n;
   } else {
     for (int i = 0; i < n; i++) l->traction_coefficient[i] = 0.0;
   }
   /* boundary friction only where some film is thin enough to share it */
-  if (p->lubrication == TRB_LUBRICATION_MIXED && (p->mixed_law > 0.0 || thinnest(n, l) < p->lambda_full)) {
+  if (p->effects.lubrication == TRB_LUBRICATION_MIXED && (p->effects.mixed_law > 0.0 || thinnest(n, l) < p->friction.lambda_full)) {
     pass_boundary(m, kind, n, l);
     counters->boundary_nodes += n;
     pass_mix(m, kind, n, l);
@@ -192,7 +194,7 @@ static inline void pass_oil(const trb_model *m, const trb_pass_kind *kind, int n
 {
   if (m->film) {
     counters->film_nodes += n;
-    if (m->params.thermal > 0.0) {
+    if (m->params.effects.thermal > 0.0) {
       pass_thermal(m, n, l);
       counters->thermal_nodes += n;
     }

@@ -111,7 +111,7 @@ static void push(const trb_model *m, const trb_pocket_face *f, trb_pocket_view *
 static double sphere_on_face(const trb_model *m, const trb_pocket_face *f, trb_vec3 centre, double h, double radius, int exact,
                              trb_vec3 *normal)
 {
-  if (m->params.pocket_edges <= 0.0 || (h >= radius && !exact)) return trb_sphere_on_plane(f->surface.normal, h, radius, normal);
+  if (m->params.pocket.edges <= 0.0 || (h >= radius && !exact)) return trb_sphere_on_plane(f->surface.normal, h, radius, normal);
   return trb_sphere_on_polygon(&f->surface, centre, h, radius, normal);
 }
 

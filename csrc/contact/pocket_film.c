@@ -37,13 +37,14 @@ typedef struct trb_bar_slice {
 static trb_bar_film film_on_bar(const trb_model *m, const trb_bar_slice *at, const trb_touch *touch, int with_slopes)
 {
   const trb_params *p = &m->params;
-  const double      least = p->roughness_pocket, h = trb_smooth_max(at->gap, least, least);
-  const double      x = trb_clamp(at->gap / p->pocket_film, 0.0, 1.0), share = 1.0 - x * x * (3.0 - 2.0 * x);
+  const double      least = p->pocket.roughness, h = trb_smooth_max(at->gap, least, least);
+  const double      x = trb_clamp(at->gap / p->pocket.film, 0.0, 1.0), share = 1.0 - x * x * (3.0 - 2.0 * x);
   const trb_vec3    across = trb_cross(at->axis, at->normal), e = trb_scale(1.0 / trb_norm(across), across);
   const double      drawn = trb_dot(e, trb_cross(at->turning, at->arm)) - 0.5 * trb_dot(e, touch->sliding);
-  const double u = sqrt(drawn * drawn + p->speed_floor * p->speed_floor), root = sqrt(2.0 * at->radius / h), s = touch->rate / u * root;
+  const double      u = sqrt(drawn * drawn + p->friction.speed_floor * p->friction.speed_floor), root = sqrt(2.0 * at->radius / h),
+                    s = touch->rate / u * root;
   const trb_squeeze film = trb_squeeze_film(s);
-  const double      oil = p->viscosity * at->width * share, scale = 24.0 * oil * u * at->radius / h, flow = 12.0 * oil * drawn * root;
+  const double      oil = p->oil.viscosity * at->width * share, scale = 24.0 * oil * u * at->radius / h, flow = 12.0 * oil * drawn * root;
   trb_bar_film      f;
   f.along = e;
   f.lever = trb_scale(-at->radius, trb_cross(at->normal, e));
@@ -57,7 +58,7 @@ static trb_bar_film film_on_bar(const trb_model *m, const trb_bar_slice *at, con
   const trb_squeeze next = trb_squeeze_film(s + step);
   const double      rise = bit * (next.load - film.load), widens = bit * (next.shear - film.shear), bend = film.load - s * rise;
   const double      thinner = trb_clamp(at->gap / (2.0 * least), 0.0, 1.0) / h;
-  const double      more = 6.0 * x * (1.0 - x) / (p->pocket_film * trb_max(share, 1e-9)), way = drawn / u;
+  const double      more = 6.0 * x * (1.0 - x) / (p->pocket.film * trb_max(share, 1e-9)), way = drawn / u;
   f.by_depth.load = f.is.load * (more + thinner) + 0.5 * scale * s * rise * thinner;
   f.by_depth.pull = f.is.pull * (more + 0.5 * thinner) + 0.5 * flow * s * bend * thinner;
   f.by_depth.drag = f.is.drag * (more + 0.5 * thinner) + 0.5 * oil * root * widens * s * thinner;

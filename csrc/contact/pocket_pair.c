@@ -24,7 +24,7 @@ static trb_arms arms_from(const trb_model *m, double roller, double pocket, doub
   const trb_geometry *g = &m->geometry;
   /* turn: about the roller's centre; orbit: about the bearing's or the cage's axis; lean: about the cage's centre */
   const double turn = fmax(roller, pocket), orbit = g->roller_centre_radius + ring + 4.0 * trb_bound_play(m);
-  const double lean = g->roller_centre_radius + turn + fabs(m->params.cage_offset) + 4.0 * trb_bound_play(m);
+  const double lean = g->roller_centre_radius + turn + fabs(m->params.cage.offset) + 4.0 * trb_bound_play(m);
   return (trb_arms){.roller = {1.0, orbit, 1.0, turn, turn}, .body = {1.0, 1.0, 1.0, lean, lean, orbit}};
 }
 
@@ -71,7 +71,7 @@ static int faces_of(const trb_model *m, int roller) { return m->first_face[rolle
 /* Of the flank. */
 static double stiffness_of(const trb_model *m, double depth)
 {
-  return m->pocket_palmgren * m->params.effective_length * pow(depth, TRB_PALMGREN_EXPONENT - 1.0);
+  return m->pocket_palmgren * m->params.roller.effective_length * pow(depth, TRB_PALMGREN_EXPONENT - 1.0);
 }
 
 #define POCKET(is, film) \

@@ -54,7 +54,7 @@ static double change_of(const trb_model *m, const trb_pair *pair, double speed)
 {
   const int            race = nodes_of(pair)->race;
   const trb_form_scale scale = trb_form_scale_of(&m->form, race);
-  const double         rolling = nodes_of(pair)->cone->radius / (0.5 * m->params.roller_diameter) * speed;
+  const double         rolling = nodes_of(pair)->cone->radius / (0.5 * m->params.roller.diameter) * speed;
   return fmin(scale.race / speed, scale.roller / rolling);
 }
 

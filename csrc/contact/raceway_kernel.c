@@ -92,7 +92,7 @@ static void pass_load(const trb_model *m, int n, trb_lanes *l)
 static void pass_film(const trb_model *m, int n, trb_lanes *l)
 {
   const double base_w = m->log_palmgren - m->log_modulus, base_u = m->log_viscosity - m->log_modulus, log_g = m->log_g;
-  const double viscosity = m->params.viscosity;
+  const double viscosity = m->params.oil.viscosity;
   TRB_PADDED(n);
   TRB_LANES for (int i = 0; i < n; i++)
   {
@@ -109,20 +109,20 @@ static void pass_film(const trb_model *m, int n, trb_lanes *l)
 /* Interference from which on a contact has rolling resistance, m. The powers set in with h_PE/h_IR, the other law with the load. */
 static double rolling_level(const trb_model *m, int first, const trb_lanes *l)
 {
-  const int law = (int)m->params.rolling_resistance;
-  if (law == TRB_ROLLING_BIBOULET_HOUPERT || law == TRB_ROLLING_LINE_SOLUTION || m->params.rolling_load > 0.0) return 0.0;
+  const int law = (int)m->params.effects.rolling_resistance;
+  if (law == TRB_ROLLING_BIBOULET_HOUPERT || law == TRB_ROLLING_LINE_SOLUTION || m->params.effects.rolling_load > 0.0) return 0.0;
   int deepest = first;
   for (int i = first; i < first + m->n_nodes; i++)
     if (l->interference[i] > l->interference[deepest]) deepest = i;
   const double ratio = l->film_elastic[deepest] / l->film_rigid[deepest];
-  return l->interference[deepest] * pow((1.0 - m->params.rolling_blend) / ratio, 1.0 / TRB_FILM_RATIO_EXPONENT);
+  return l->interference[deepest] * pow((1.0 - m->params.friction.rolling_blend) / ratio, 1.0 / TRB_FILM_RATIO_EXPONENT);
 }
 
 /* Laws that were made for the load of a whole contact, over the length of the roller: every node gets the interference of this mean load, and
  * the lengths that carry stand for the whole length. */
 static void pass_whole_load(const trb_model *m, int first, trb_lanes *l)
 {
-  const double length = m->params.effective_length;
+  const double length = m->params.roller.effective_length;
   double       load = 0.0, rolled = 0.0;
   for (int i = first; i < first + m->n_lanes; i++) {
     load += l->interference[i] > 0.0 ? l->load_per_length[i] * l->weight[i] : 0.0;
@@ -139,7 +139,7 @@ static void pass_whole_load(const trb_model *m, int first, trb_lanes *l)
 /* Lengths with rolling resistance, and their interference. */
 static void pass_rolled(const trb_model *m, int first, trb_lanes *l)
 {
-  const int              is_gauss = (int)m->params.quadrature == TRB_QUADRATURE_GAUSS; /* slices are those of the paper */
+  const int              is_gauss = (int)m->params.effects.quadrature == TRB_QUADRATURE_GAUSS; /* slices are those of the paper */
   const double           level = is_gauss ? rolling_level(m, first, l) : 0.0;
   const trb_contact_line line = {
       .n = m->n_nodes, .station = m->station, .cell = m->cell, .interference = l->interference + first, .level = level};
@@ -150,7 +150,7 @@ static void pass_rolled(const trb_model *m, int first, trb_lanes *l)
   }
   const int n = is_gauss ? trb_loaded_part(&line, l->rolled + first, ends) : 0;
   for (int k = 0; k < n; k++) l->rolled_log_d[first + ends[k].lane] = log(trb_max(ends[k].interference, TRB_SMALLEST_INTERFERENCE));
-  if (m->params.rolling_load > 0.0) pass_whole_load(m, first, l);
+  if (m->params.effects.rolling_load > 0.0) pass_whole_load(m, first, l);
 }
 
 /* The loop of rolling resistance once per form of law, so that the choice is made outside; share and law may use log_w, log_u and
@@ -171,17 +171,17 @@ static void pass_rolled(const trb_model *m, int first, trb_lanes *l)
 static void pass_rolling(const trb_model *m, int n, trb_lanes *l)
 {
   const double base_w = m->log_palmgren - m->log_modulus, base_u = m->log_viscosity - m->log_modulus, log_g = m->log_g;
-  const double supply = m->params.supply;
-  if (m->params.rolling_resistance == TRB_ROLLING_LINE_SOLUTION) {
+  const double supply = m->params.effects.supply;
+  if (m->params.effects.rolling_resistance == TRB_ROLLING_LINE_SOLUTION) {
     const double scale = supply * m->geometry.effective_modulus;
     TRB_ROLLING_LOOP(1.0, trb_rolling_line_solution(log_w, log_u, log_g))
-  } else if (m->params.rolling_resistance == TRB_ROLLING_BIBOULET_HOUPERT) {
+  } else if (m->params.effects.rolling_resistance == TRB_ROLLING_BIBOULET_HOUPERT) {
     const double scale = supply * m->geometry.effective_modulus;
     TRB_ROLLING_LOOP(1.0, trb_rolling_biboulet_houpert(log_w, log_u))
   } else {
-    const trb_rolling_power power = trb_rolling_power_of((int)m->params.rolling_resistance);
-    const double            scale = supply / m->params.pressure_coefficient, factor = power.factor * exp(power.material * log_g);
-    const double            band = m->params.rolling_blend;
+    const trb_rolling_power power = trb_rolling_power_of((int)m->params.effects.rolling_resistance);
+    const double            scale = supply / m->params.oil.pressure_coefficient, factor = power.factor * exp(power.material * log_g);
+    const double            band = m->params.friction.rolling_blend;
     TRB_ROLLING_LOOP(trb_rolling_share(l->film_elastic[i] / l->film_rigid[i] * exp(TRB_FILM_RATIO_EXPONENT * deeper), band),
                      (factor * trb_rolling_power_at(power, log_w, log_u, log_g)))
   }
@@ -191,7 +191,7 @@ static void pass_rolling(const trb_model *m, int n, trb_lanes *l)
  * rollers push aside does not flow back in time (SKF's replenishment); a meniscus before the contact takes more of it than of the film. */
 static void pass_supply(const trb_model *m, int n, trb_lanes *l)
 {
-  const double starvation = m->params.starvation_factor, decline = m->replenishment;
+  const double starvation = m->params.effects.starvation_factor, decline = m->replenishment;
   TRB_PADDED(n);
   TRB_LANES for (int i = 0; i < n; i++) l->supplied[i] = starvation * exp(-decline * l->mean_speed[i]);
 }
@@ -199,7 +199,7 @@ static void pass_supply(const trb_model *m, int n, trb_lanes *l)
 static void pass_meniscus(const trb_model *m, int n, trb_lanes *l)
 {
   const double base_w = m->log_palmgren - m->log_modulus, base_u = m->log_viscosity - m->log_modulus, log_g = m->log_g;
-  const double height = m->params.oil_height;
+  const double height = m->params.effects.oil_height;
   TRB_PADDED(n);
   TRB_LANES for (int i = 0; i < n; i++)
   {
@@ -225,7 +225,7 @@ static void pass_gaps(const trb_model *m, int first, trb_lanes *l)
   for (int i = first; i < first + m->n_nodes; i++)
     if (l->interference[i] > l->interference[deepest]) deepest = i;
   const double film = l->film[deepest], depth = l->interference[deepest],
-               scale = m->params.supply * m->params.viscosity * depth / (depth + film);
+               scale = m->params.effects.supply * m->params.oil.viscosity * depth / (depth + film);
   for (int i = first; i < first + m->n_nodes; i++) {
     const double idle = trb_max(l->weight[i] - l->rolled[i], 0.0), gap = film + trb_max(-l->interference[i], 0.0);
     l->rolling[i] += scale * l->supplied[i] * l->mean_speed[i] * idle * trb_rolling_gap(l->radius[i] / gap);
@@ -235,7 +235,7 @@ static void pass_gaps(const trb_model *m, int first, trb_lanes *l)
 /* Where the speed is small it goes smoothly to zero with the mean velocity, as the film's force does with its direction. */
 static void pass_hysteresis(const trb_model *m, int n, trb_lanes *l)
 {
-  const double factor = m->params.hysteresis;
+  const double factor = m->params.effects.hysteresis;
   TRB_PADDED(n);
   TRB_LANES for (int i = 0; i < n; i++) l->rolling[i] += l->load[i] * trb_rolling_hysteresis(factor, l->half_width[i], l->radius[i]);
 }
@@ -363,7 +363,7 @@ static void sum_outputs(const trb_model *m, const trb_race_input *inputs, const 
     if (in->uneven != NULL) sum_uneven(in, c * n, n, l, out);
     if (!rolling) continue;
     sum_rolling(in, c * n, n, l, out);
-    if (m->params.rolling_pressure_force > 0.0) {
+    if (m->params.effects.rolling_pressure_force > 0.0) {
       sum_pressure_force(in, c * n, n, l, out);
       counters->pressure_force_nodes += n;
     }
@@ -374,7 +374,7 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inp
                      trb_race_output *outputs)
 {
   int       loaded[TRB_TILE_LANES / TRB_LANE_PAD], n_loaded = 0;
-  const int n = m->n_lanes, rolling = m->params.rolling_resistance > 0.0 && m->film;
+  const int n = m->n_lanes, rolling = m->params.effects.rolling_resistance > 0.0 && m->film;
   for (int c = 0; c < n_inputs; c++) {
     outputs[c] = (trb_race_output){0};
     /* a contact without interference leaves its lanes to the next */
@@ -385,10 +385,10 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inp
   }
   const int           all = n_loaded * n;
   const trb_pass_kind kind = {.mean_pressure = TRB_LINE_MEAN_PRESSURE,
-                              .roughness = m->params.roughness_raceway,
-                              .boundary_limit = m->params.boundary_limit,
-                              .asperity_factor = m->params.asperity_factor,
-                              .asperity_exponent = m->params.asperity_exponent};
+                              .roughness = m->params.roughness.raceway,
+                              .boundary_limit = m->params.friction.boundary_limit,
+                              .asperity_factor = m->params.friction.asperity_factor,
+                              .asperity_exponent = m->params.friction.asperity_exponent};
   if (all == 0) return;
   counters->raceway_nodes += all;
   pass_load(m, all, l);
@@ -406,18 +406,18 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inp
   if (rolling) {
     for (int c = 0; c < n_loaded; c++) pass_rolled(m, c * n, l);
     pass_rolling(m, all, l);
-    const int is_starved = m->params.starvation_factor < 1.0 || m->replenishment > 0.0 || m->params.oil_height > 0.0;
-    if (is_starved || m->params.flooded_gaps > 0.0) pass_supply(m, all, l);
-    if (m->params.oil_height > 0.0) {
+    const int is_starved = m->params.effects.starvation_factor < 1.0 || m->replenishment > 0.0 || m->params.effects.oil_height > 0.0;
+    if (is_starved || m->params.effects.flooded_gaps > 0.0) pass_supply(m, all, l);
+    if (m->params.effects.oil_height > 0.0) {
       pass_meniscus(m, all, l);
       counters->meniscus_nodes += all;
     }
     if (is_starved) pass_supplied(all, l);
-    if (m->params.flooded_gaps > 0.0) {
+    if (m->params.effects.flooded_gaps > 0.0) {
       for (int c = 0; c < n_loaded; c++) pass_gaps(m, c * n, l);
       counters->gap_nodes += all;
     }
-    if (m->params.hysteresis > 0.0) {
+    if (m->params.effects.hysteresis > 0.0) {
       pass_hysteresis(m, all, l);
       counters->hysteresis_nodes += all;
     }

@@ -127,7 +127,7 @@ static void edge_on_end(const trb_model *m, const trb_roller_pose *r, const trb_
   const trb_vec3  normal = trb_scale(-1.0, a);
   const trb_touch touch =
       trb_touching(trb_add(r->v, trb_cross(r->omega, arm)), trb_add(ring->velocity, trb_cross(ring->omega, ring_arm)), normal);
-  const double   elastic = 0.5 * m->params.end_stiffness * d * sqrt(d);
+  const double   elastic = 0.5 * m->params.roller.end_stiffness * d * sqrt(d);
   trb_load       load = {.elastic = 0.4 * elastic * d};
   const trb_push push = trb_push_at(m, &touch, normal, elastic, trb_contact_damping(m, d), 1.0, load.lost);
   const trb_vec3 torque = trb_cross(ring_arm, push.force);

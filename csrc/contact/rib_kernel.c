@@ -124,12 +124,12 @@ static void sum_roller(const trb_model *m, const trb_roller_pose *r, const trb_r
 void TRB_KERNEL_NAME(const trb_model *m, const trb_rib *rib, const trb_instant *at, const trb_ring_pose *rings, trb_lanes *l,
                      trb_counters *counters, trb_race_output *outputs)
 {
-  const int           n = at->n, all = (n + TRB_LANE_PAD - 1) / TRB_LANE_PAD * TRB_LANE_PAD, turns = m->params.rib_turning > 0.0;
+  const int           n = at->n, all = (n + TRB_LANE_PAD - 1) / TRB_LANE_PAD * TRB_LANE_PAD, turns = m->params.effects.rib_turning > 0.0;
   const trb_pass_kind kind = {.mean_pressure = TRB_POINT_MEAN_PRESSURE,
                               .roughness = rib->roughness,
-                              .boundary_limit = m->params.rib_boundary_limit,
-                              .asperity_factor = m->params.rib_asperity_factor,
-                              .asperity_exponent = m->params.rib_asperity_exponent};
+                              .boundary_limit = m->params.friction.rib_boundary_limit,
+                              .asperity_factor = m->params.friction.rib_asperity_factor,
+                              .asperity_exponent = m->params.friction.rib_asperity_exponent};
   double              turning[TRB_TILE_LANES], arm2[TRB_TILE_LANES];
   if (n == 0) return;
   pass_geometry(rib, at, rings, turning, l);

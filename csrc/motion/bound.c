@@ -11,7 +11,7 @@ static double apart(trb_vec3 a, trb_vec3 b) { return trb_norm(trb_sub(a, b)); }
 /* Longest distance of what meets a ring from its reference point, m: that of an outer ring is the apex. */
 static double outside_of(const trb_model *m)
 {
-  return 2.0 * m->geometry.roller_centre_radius + fabs(m->geometry.centre_plane) + m->params.total_length;
+  return 2.0 * m->geometry.roller_centre_radius + fabs(m->geometry.centre_plane) + m->params.roller.total_length;
 }
 
 void trb_ring_offsets_of(const trb_system *system, const trb_body_at *bodies, trb_ring_offset *offsets)
@@ -90,7 +90,7 @@ int trb_speed_bound_holds(const trb_speed_bound *bound, const trb_system *system
 {
   const trb_model *m = system->model;
   /* distances of what meets from the roller's centre of mass, and from a ring's reference point */
-  const double reach = m->params.total_length + m->params.roller_diameter, far = outside_of(m);
+  const double reach = m->params.roller.total_length + m->params.roller.diameter, far = outside_of(m);
   double       passed = 0.0, speed = 0.0;
   for (int b = 0; b < system->n_bodies; b++) passed = trb_max(passed, offsets[b].speed);
   speed = passed * fabs(angle - bound->angle);

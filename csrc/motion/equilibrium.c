@@ -164,11 +164,12 @@ static void sum_ring(solver *s)
 /* Largest unbalanced force; moments as forces at half the contact's length or at the pitch radius. */
 static double imbalance(const solver *s)
 {
-  const double half = 0.5 * s->m->params.effective_length, arm[N] = {1.0, 1.0, half, half};
+  const double half = 0.5 * s->m->params.roller.effective_length, arm[N] = {1.0, 1.0, half, half};
   double       worst = 0.0;
   for (int j = 0; j < s->m->n_rollers; j++)
     for (int i = 0; i < TRB_ROLLER_FREEDOMS; i++) worst = fmax(worst, fabs(s->forces[N * j + i]) / arm[i]);
-  for (int i = 0; i < TRB_RING_FREEDOMS; i++) worst = fmax(worst, fabs(s->total[i]) / (i < 3 ? 1.0 : 0.5 * s->m->params.pitch_diameter));
+  for (int i = 0; i < TRB_RING_FREEDOMS; i++)
+    worst = fmax(worst, fabs(s->total[i]) / (i < 3 ? 1.0 : 0.5 * s->m->params.bearing.pitch_diameter));
   return worst;
 }
 
@@ -263,7 +264,7 @@ static void hold_row(double *row, int width, int unknown)
 /* That stiffness against a coordinate of a roller. */
 static double stiffness_against(const trb_model *m, int coordinate)
 {
-  const double arm = 0.5 * m->params.effective_length;
+  const double arm = 0.5 * m->params.roller.effective_length;
   return coordinate < 2 ? TRB_CONTACT_STIFFNESS : TRB_CONTACT_STIFFNESS * arm * arm / 3.0;
 }
 
@@ -281,7 +282,7 @@ static void fill_rows(const solver *s, int roller, double damping, int width, do
 static int newton_step(solver *s, double damping, double *step_rollers, double *step_ring)
 {
   const int    n = s->m->n_rollers;
-  const double radius = 0.5 * s->m->params.pitch_diameter, across = TRB_CONTACT_STIFFNESS * radius * radius;
+  const double radius = 0.5 * s->m->params.bearing.pitch_diameter, across = TRB_CONTACT_STIFFNESS * radius * radius;
   const double ring_scale[R] = {TRB_CONTACT_STIFFNESS, TRB_CONTACT_STIFFNESS, TRB_CONTACT_STIFFNESS, across, across};
   enum { WIDTH = N + R + 1 };
   double ring[R * (R + 1)];
@@ -324,7 +325,7 @@ static int newton_step(solver *s, double damping, double *step_rollers, double *
 /* Steps longer than a contact's interference by far are shortened: the stiffness says nothing about them. */
 static double shorten(const solver *s, const double *step_rollers, const double *step_ring)
 {
-  const double most = 5e-5, arm = 0.5 * s->m->params.effective_length, radius = 0.5 * s->m->params.pitch_diameter;
+  const double most = 5e-5, arm = 0.5 * s->m->params.roller.effective_length, radius = 0.5 * s->m->params.bearing.pitch_diameter;
   double       longest = 0.0;
   for (int j = 0; j < s->m->n_rollers; j++)
     for (int i = 0; i < N; i++) longest = fmax(longest, fabs(step_rollers[N * j + i]) * (i < 2 ? 1.0 : arm));
@@ -513,7 +514,7 @@ trb_status trb_equilibrium_solve(const trb_system *system, trb_equilibrium *e, t
   /* without a pair that seats it nothing but friction holds a roller along its axis, and a cylinder without ribs at both ends; in planar motion
    * it does not skew, nor does a cylinder but by friction */
   s.held[1] = !trb_system_seats(system) || (trb_has_cylinders(m) && !trb_between_ribs(&m->params));
-  s.held[3] = m->params.planar > 0.0 || trb_has_cylinders(m);
+  s.held[3] = m->params.effects.planar > 0.0 || trb_has_cylinders(m);
   trb_status status = trb_dynamics_create(system, NULL, "scalar", &s.d, message);
   if (status != TRB_OK) return status;
   trb_memory     memory = {0};

@@ -54,7 +54,7 @@ trb_status trb_peak_look_create(const trb_system *system, const trb_motion *moti
   p->system = *system;
   p->system.model = &p->normal;
   p->normal.friction = p->normal.pocket_friction = 0;
-  p->normal.params.rolling_resistance = 0.0;
+  p->normal.params.effects.rolling_resistance = 0.0;
   p->bounds = trb_memory_zeros(&p->memory, TRB_MOST_PAIRS * n, sizeof *p->bounds);
   p->speeds = trb_memory_zeros(&p->memory, TRB_MOST_PAIRS * n, sizeof *p->speeds);
   p->posed = trb_memory_zeros(&p->memory, n, sizeof *p->posed);

@@ -80,7 +80,7 @@ static double shaft_offset(const trb_seen *seen, int coordinate)
 {
   const trb_dynamics *d = seen->d;
   const trb_body     *ring = &d->system->bodies[d->system->driven];
-  const double        sense = d->model->params.ring_turned > 0.0 ? -1.0 : 1.0;
+  const double        sense = d->model->params.inner_ring.turned > 0.0 ? -1.0 : 1.0;
   return ring->kind == &trb_ring_free ? sense * seen->y[ring->first + coordinate] : 0.0;
 }
 
@@ -97,7 +97,7 @@ static void show_cage(const trb_seen *seen, double *const *to)
   const trb_model      *m = d->model;
   const trb_drive      *drive = &d->drive;
   const trb_rigid_pose *c = &d->bodies[seen->of].pose;
-  const trb_vec3  plane = trb_v(0, 0, m->geometry.centre_plane), rail = trb_v(0, 0, m->geometry.centre_plane + m->params.cage_rail_offset);
+  const trb_vec3  plane = trb_v(0, 0, m->geometry.centre_plane), rail = trb_v(0, 0, m->geometry.centre_plane + m->params.cage.rail_offset);
   const trb_vec3  axis = from_r(drive, c->frame.a), centre = from_r(drive, c->x);
   const trb_frame body = {from_r(drive, c->body.n), from_r(drive, c->body.t), axis};
   trb_vec3        force = {0, 0, 0}, moment = {0, 0, 0};
@@ -109,8 +109,8 @@ static void show_cage(const trb_seen *seen, double *const *to)
     force = trb_add(force, d->hub.on[seen->of].force);
     moment = trb_add(moment, d->hub.on[seen->of].moment);
   }
-  put3(to[CAGE_position], trb_sub(trb_axpy(centre, -m->params.cage_offset, axis), plane));
-  put3(to[CAGE_rail_position], trb_sub(trb_axpy(centre, m->params.cage_rail_offset - m->params.cage_offset, axis), rail));
+  put3(to[CAGE_position], trb_sub(trb_axpy(centre, -m->params.cage.offset, axis), plane));
+  put3(to[CAGE_rail_position], trb_sub(trb_axpy(centre, m->params.cage.rail_offset - m->params.cage.offset, axis), rail));
   put3(to[CAGE_velocity], from_r(drive, c->v));
   put_quaternion(to[CAGE_orientation], &body);
   put3(to[CAGE_angular_velocity], from_r(drive, c->omega));

@@ -24,8 +24,8 @@ void trb_integrator_choose(trb_integrator *it)
  * rotation, whose slip is a small share of a small speed, is followed as exactly as fast rotation. */
 static double speed_share(const trb_integrator *it, const trb_model *m, double speed)
 {
-  const double rolling = 0.5 * m->params.roller_diameter * fabs(m->geometry.roller_spin_ratio * speed);
-  return trb_min(1.0, trb_slow_share * it->settings.rtol * trb_max(rolling, m->params.speed_floor) / it->settings.atol_velocity);
+  const double rolling = 0.5 * m->params.roller.diameter * fabs(m->geometry.roller_spin_ratio * speed);
+  return trb_min(1.0, trb_slow_share * it->settings.rtol * trb_max(rolling, m->params.friction.speed_floor) / it->settings.atol_velocity);
 }
 
 /* Tolerances of the entries from one on, which are the coordinates of a body of a system. */

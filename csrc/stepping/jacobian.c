@@ -110,7 +110,7 @@ static void respond(trb_jacobian *jac, int b, const double *y, const double *sti
   const trb_dynamics *d = jac->d;
   const trb_body     *body = &d->system->bodies[b];
   const int           first = body->first - trb_state_hub(d->system);
-  const double        force = body->kind->mass(d->model, body), arm = 0.5 * d->model->params.pitch_diameter;
+  const double        force = body->kind->mass(d->model, body), arm = 0.5 * d->model->params.bearing.pitch_diameter;
   for (int c = 0; c < 6; c++) {
     const double unit[6] = {c == 0, c == 1, c == 2, c == 3, c == 4, c == 5}, size = c < 3 ? force : force * arm * arm;
     trb_wrench   load = {trb_scale(size, trb_v(unit[0], unit[1], unit[2])), trb_scale(size, trb_v(unit[3], unit[4], unit[5]))};

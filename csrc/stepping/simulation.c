@@ -219,7 +219,7 @@ trb_status trb_simulation_set_state(trb_simulation *s, double time, const double
 static int changes_speed(const trb_simulation *s)
 {
   int changes = trb_integrator_is_driven(&s->integrator);
-  for (int k = 0; k < s->assembly.n; k++) changes |= s->assembly.members[k].model->params.ring_free > 1.0;
+  for (int k = 0; k < s->assembly.n; k++) changes |= s->assembly.members[k].model->params.inner_ring.free > 1.0;
   return changes;
 }
 

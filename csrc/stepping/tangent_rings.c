@@ -123,7 +123,7 @@ void trb_rings_differentiate(trb_tangents *t, trb_dynamics *d, const int *chosen
 
 double trb_rings_error(const trb_tangents *t, const trb_ring_tangent *ring, const trb_tangent_measure *measure, const double *error)
 {
-  const double gamma = measure->gamma, arm = 0.5 * t->model->params.pitch_diameter;
+  const double gamma = measure->gamma, arm = 0.5 * t->model->params.bearing.pitch_diameter;
   /* gamma times an acceleration in the velocity, and gamma times that in the place */
   const double per = gamma / t->least_mass * hypot(ring->per[5], gamma * ring->per[0]);
   double       sum = 0.0;
@@ -178,8 +178,8 @@ double trb_rings_moved(trb_tangents *t, const trb_dynamics *d, int roller)
     trb_ring_offset     *offset = &t->offsets[body];
     offset->leaned = trb_norm(trb_sub(to->axis, from->axis));
     offset->shifted = trb_norm(trb_sub(to->centre, from->centre));
-    slid +=
-        trb_norm(trb_sub(to->velocity, from->velocity)) + 0.5 * t->model->params.pitch_diameter * trb_norm(trb_sub(to->omega, from->omega));
+    slid += trb_norm(trb_sub(to->velocity, from->velocity)) +
+            0.5 * t->model->params.bearing.pitch_diameter * trb_norm(trb_sub(to->omega, from->omega));
   }
   return slid;
 }

@@ -160,10 +160,13 @@ const trb_ring_slopes *trb_tangents_ring_slopes(const trb_tangents *t, int rolle
 static double speed_of_range(const trb_model *m, double speed)
 {
   const trb_params *p = &m->params;
-  const int         dry = p->lubrication == TRB_LUBRICATION_DRY, boundary = p->lubrication == TRB_LUBRICATION_BOUNDARY;
+  const int         dry = p->effects.lubrication == TRB_LUBRICATION_DRY, boundary = p->effects.lubrication == TRB_LUBRICATION_BOUNDARY;
   if (!m->friction) return speed;
-  if (boundary || p->lubrication == TRB_LUBRICATION_MIXED) speed *= trb_min(trb_decay_of_slip_share / p->boundary_decay, 1.0);
-  return dry || (!boundary && p->traction == TRB_TRACTION_COULOMB) ? trb_min(speed, trb_decay_of_slip_share * p->coulomb_speed) : speed;
+  if (boundary || p->effects.lubrication == TRB_LUBRICATION_MIXED)
+    speed *= trb_min(trb_decay_of_slip_share / p->friction.boundary_decay, 1.0);
+  return dry || (!boundary && p->effects.traction == TRB_TRACTION_COULOMB)
+             ? trb_min(speed, trb_decay_of_slip_share * p->friction.coulomb_speed)
+             : speed;
 }
 
 /* By how much a roller may slip away from its origin so that friction is linear. */
@@ -173,15 +176,15 @@ static double slip_allowed(const trb_dynamics *d, double share)
   const trb_body_at *driven = &d->bodies[d->system->driven];
   const double       shaft = d->system->n_moving > 0 ? trb_dot(driven->ring.omega, driven->ring.axis) : d->drive.shaft_speed;
   const double       spin = d->model->geometry.roller_spin_ratio * (shaft - d->drive.carried_speed);
-  return share * speed_of_range(d->model, trb_max(0.5 * p->roller_diameter * fabs(spin), p->speed_floor));
+  return share * speed_of_range(d->model, trb_max(0.5 * p->roller.diameter * fabs(spin), p->friction.speed_floor));
 }
 
 /* By how much a roller has slipped away from its origin, m/s. */
 static double slipped(const trb_params *p, const double *step)
 {
   return fabs(step[TRB_ROLLER_v_r]) + fabs(step[TRB_ROLLER_v_t]) + fabs(step[TRB_ROLLER_v_z]) +
-         0.5 * p->roller_diameter * fabs(step[TRB_ROLLER_omega_a]) +
-         p->effective_length * (fabs(step[TRB_ROLLER_omega_n]) + fabs(step[TRB_ROLLER_omega_t]));
+         0.5 * p->roller.diameter * fabs(step[TRB_ROLLER_omega_a]) +
+         p->roller.effective_length * (fabs(step[TRB_ROLLER_omega_n]) + fabs(step[TRB_ROLLER_omega_t]));
 }
 
 /* Whether contacts that a bound leaves open have changed their interference by less than a share of their margin all the same. Bounds add up what

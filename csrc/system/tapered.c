@@ -37,22 +37,22 @@ static void add_bodies(trb_system *s)
 {
   s->n_bodies = TRB_N_BODIES;
   s->driven = TRB_BODY_INNER_RING;
-  const trb_body_kind *outer = s->model->params.outer_turns > 0.0 ? &trb_ring_turning : &trb_ring_at_rest;
+  const trb_body_kind *outer = s->model->params.outer_ring.turns > 0.0 ? &trb_ring_turning : &trb_ring_at_rest;
   s->bodies[TRB_BODY_OUTER_RING] = (trb_body){.kind = outer, .name = "outer ring"};
-  if (s->model->params.outer_free > 0.0)
+  if (s->model->params.outer_ring.free > 0.0)
     s->bodies[TRB_BODY_OUTER_RING] = (trb_body){.kind = &trb_ring_housed,
                                                 .name = "outer ring",
                                                 .own = &s->model->ring[TRB_RACE_OUTER],
                                                 .loss = TRB_BOOK(TRB_LOSS_support),
-                                                .carried = s->model->params.outer_carried > 0.0};
+                                                .carried = s->model->params.outer_ring.carried > 0.0};
   s->bodies[TRB_BODY_INNER_RING] = (trb_body){.kind = &trb_ring_prescribed, .name = "inner ring"};
-  if (s->model->params.ring_free > 0.0)
+  if (s->model->params.inner_ring.free > 0.0)
     s->bodies[TRB_BODY_INNER_RING] = (trb_body){.kind = &trb_ring_free,
                                                 .name = "inner ring",
                                                 .own = &s->model->ring[TRB_RACE_INNER],
                                                 .loss = TRB_BOOK(TRB_LOSS_support),
-                                                .carried = s->model->params.ring_carried > 0.0};
-  const trb_body_kind *cage = s->model->params.with_cage > 1.0 ? &trb_body_spacer : &trb_body_cage;
+                                                .carried = s->model->params.inner_ring.carried > 0.0};
+  const trb_body_kind *cage = s->model->params.effects.with_cage > 1.0 ? &trb_body_spacer : &trb_body_cage;
   s->bodies[TRB_BODY_CAGE] = (trb_body){.kind = cage, .name = "cage"};
   if (s->model->modes.n > 0) {
     s->bodies[TRB_BODY_CAGE] = trb_elastic_cage_of(&s->model->modes, "cage");
@@ -157,15 +157,15 @@ static int is_on(const trb_model *m, int pair)
 {
   const trb_params *p = &m->params;
   switch (pair) {
-  case TRB_PAIR_rib: return p->back_rib > 0.0;
-  case TRB_PAIR_front_rib: return p->front_rib > 0.0;
-  case TRB_PAIR_outer_rib: return p->outer_rib > 0.0;
-  case TRB_PAIR_outer_front_rib: return p->outer_front_rib > 0.0;
-  case TRB_PAIR_drag: return p->oil_fill > 0.0 && p->drag_coefficient > 0.0;
+  case TRB_PAIR_rib: return p->effects.back_rib > 0.0;
+  case TRB_PAIR_front_rib: return p->effects.front_rib > 0.0;
+  case TRB_PAIR_outer_rib: return p->rib.outer > 0.0;
+  case TRB_PAIR_outer_front_rib: return p->rib.outer_front > 0.0;
+  case TRB_PAIR_drag: return p->effects.oil_fill > 0.0 && p->effects.drag_coefficient > 0.0;
   case TRB_PAIR_pocket: return m->first_face[m->n_rollers] > 0;
-  case TRB_PAIR_inner_land: return trb_has_cage(m) && p->guidance == TRB_GUIDANCE_INNER_LAND;
-  case TRB_PAIR_outer_land: return trb_has_cage(m) && p->guidance == TRB_GUIDANCE_OUTER_LAND;
-  case TRB_PAIR_cage_drag: return p->with_cage > 0.0 && p->oil_fill > 0.0 && p->cage_face_outer > p->cage_face_inner;
+  case TRB_PAIR_inner_land: return trb_has_cage(m) && p->effects.guidance == TRB_GUIDANCE_INNER_LAND;
+  case TRB_PAIR_outer_land: return trb_has_cage(m) && p->effects.guidance == TRB_GUIDANCE_OUTER_LAND;
+  case TRB_PAIR_cage_drag: return p->effects.with_cage > 0.0 && p->effects.oil_fill > 0.0 && p->cage.face_outer > p->cage.face_inner;
   default: return 1;
   }
 }
@@ -196,9 +196,9 @@ trb_status trb_system_tapered(const trb_model *model, trb_system **system, trb_m
   *system = NULL;
   if (s == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for a system");
   s->model = model;
-  if (model->modes.n != (int)model->params.cage_modes) {
+  if (model->modes.n != (int)model->params.cage.n_modes) {
     trb_system_free(s);
-    return trb_fail(message, TRB_ERR_INPUT, "cage_modes = %g: %d modes are given", model->params.cage_modes, model->modes.n);
+    return trb_fail(message, TRB_ERR_INPUT, "cage_modes = %g: %d modes are given", model->params.cage.n_modes, model->modes.n);
   }
   add_bodies(s);
   add_surfaces(s);

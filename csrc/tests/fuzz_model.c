@@ -44,8 +44,8 @@ static void set_up(trial *t, const uint8_t *data, size_t size)
 {
   memset(t, 0, sizeof *t);
   t->params = size / 4 % 3 == 2 ? rig_cylinder() : rig_params(); /* one input in three has cylinders */
-  t->params.n_rollers = 4;
-  t->params.n_slices = 3;
+  t->params.bearing.n_rollers = 4;
+  t->params.effects.n_slices = 3;
   rig_faces(&t->params, t->faces);
   t->settings = rig_settings();
   t->load[2] = -4930.0;
@@ -139,7 +139,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   trb_model   *m = NULL;
   trb_system  *system;
   set_up(&t, data, size);
-  const int n = t.params.n_rollers >= 0.0 && t.params.n_rollers <= MOST_ROLLERS ? (int)t.params.n_rollers : MOST_ROLLERS;
+  const int n =
+      t.params.bearing.n_rollers >= 0.0 && t.params.bearing.n_rollers <= MOST_ROLLERS ? (int)t.params.bearing.n_rollers : MOST_ROLLERS;
   if (trb_model_create(&t.params, t.deviation, n, t.faces, RIG_FACES, &m, &message) != TRB_OK) {
     if (message.text[0] == '\0') __builtin_trap(); /* refused without a reason */
     return 0;

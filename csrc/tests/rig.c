@@ -18,38 +18,45 @@ static void need(trb_status status, const trb_message *message)
 trb_params rig_params(void)
 {
   trb_params p = {0};
-  p.n_rollers = 12;
-  p.cup_half_angle = (12.0 + 57.0 / 60.0 + 10.0 / 3600.0) * TRB_PI / 180.0;
-  p.roller_diameter = 14.0e-3, p.effective_length = 19.8e-3, p.total_length = 20.8e-3, p.pitch_diameter = 82.389e-3;
-  p.roller_density = 7810, p.youngs_modulus = p.roller_youngs_modulus = p.cage_youngs_modulus = 206e9;
-  p.poisson_ratio = p.roller_poisson_ratio = p.cage_poisson_ratio = 0.3, p.sphere_ratio = 0.9;
-  p.rib_contact_height = 1.667e-3, p.rib_edge_low = 0.3e-3, p.rib_edge_high = 3.5e-3;
-  p.front_rib_clearance = 0.2e-3, p.front_rib_low = 0.3e-3, p.front_rib_high = 2e-3, p.end_stiffness = 1e10;
-  p.roughness_raceway = 0.16e-6, p.roughness_rib = 0.24e-6, p.roughness_pocket = 1e-6;
-  p.profile = 2, p.crown_radius = 100, p.profile_k1 = 1.5, p.profile_k2 = 0.4, p.profile_zm = 10e-6, p.profile_load = 1833;
-  p.profile_a = 3.5e-4, p.profile_c = 19.8e-3, p.profile_k = 2.0;
-  p.quadrature = 0, p.n_slices = RIG_SLICES;
-  p.cage_mass = 0.2, p.cage_inertia_axial = 3.9e-4, p.cage_inertia_transverse = 2.1e-4, p.cage_offset = 0, p.cage_rail_offset = 12e-3;
-  p.viscosity = 0.0346, p.pressure_coefficient = 1.97e-8, p.temperature_coefficient = 0.0392, p.conductivity = 0.134, p.temperature = 60;
-  p.viscosity_law = 0, p.dicke_a = 327.79, p.dicke_b = 2.9862, p.dicke_c = 4.419e-3, p.dicke_d = 3.0115e-4, p.viscosity_exponent_cap = 25;
-  p.eyring_stress = 5e6, p.shear_modulus_floor = 1e7, p.starvation_factor = 1, p.supply = 1;
-  p.lambda_boundary = 0.01, p.lambda_full = 1.5, p.boundary_limit = 0.1, p.rib_boundary_limit = 0.1, p.boundary_slope = 22.28,
-  p.boundary_decay = 181.46;
-  p.dry_friction = 0.1, p.coulomb_speed = 0.01, p.cage_entrainment_speed = 0.05, p.speed_floor = 1e-3, p.thermal_floor = 0.05;
-  p.oil_density = 860.6, p.drag_coefficient = 1;
-  p.asperity_factor = 2.32, p.asperity_exponent = 0.97, p.rib_asperity_factor = 1.90, p.rib_asperity_exponent = 0.99;
-  p.land_offset = 12e-3, p.land_inner_radius = 39.5e-3, p.land_outer_radius = 50.5e-3, p.land_width = 3e-3;
-  p.land_clearance = 0.1e-3, p.land_contact_film = 1e-6, p.land_fill = 1;
-  p.rolling_blend = 0.1, p.damping_race = 0.1, p.damping_cage = 0.5, p.film_damping = 1e-5, p.film_damping_depth = 3e-7;
-  p.with_cage = 1, p.lubrication = 2, p.traction = 2, p.thermal = 1, p.rolling_resistance = 1, p.back_rib = 1, p.front_rib = 1;
-  p.pocket_bars = 1, p.pocket_ends = 1, p.pocket_edges = 1;
+  p.bearing.n_rollers = 12;
+  p.bearing.cup_half_angle = (12.0 + 57.0 / 60.0 + 10.0 / 3600.0) * TRB_PI / 180.0;
+  p.roller.diameter = 14.0e-3, p.roller.effective_length = 19.8e-3, p.roller.total_length = 20.8e-3, p.bearing.pitch_diameter = 82.389e-3;
+  p.roller.density = 7810, p.bearing.youngs_modulus = p.roller.youngs_modulus = p.cage.youngs_modulus = 206e9;
+  p.bearing.poisson_ratio = p.roller.poisson_ratio = p.cage.poisson_ratio = 0.3, p.roller.sphere_ratio = 0.9;
+  p.rib.contact_height = 1.667e-3, p.rib.edge_low = 0.3e-3, p.rib.edge_high = 3.5e-3;
+  p.rib.front_clearance = 0.2e-3, p.rib.front_low = 0.3e-3, p.rib.front_high = 2e-3, p.roller.end_stiffness = 1e10;
+  p.roughness.raceway = 0.16e-6, p.roughness.rib = 0.24e-6, p.pocket.roughness = 1e-6;
+  p.roller.profile = 2, p.roller.crown_radius = 100, p.roller.profile_k1 = 1.5, p.roller.profile_k2 = 0.4, p.roller.profile_zm = 10e-6,
+  p.roller.profile_load = 1833;
+  p.roller.profile_a = 3.5e-4, p.roller.profile_c = 19.8e-3, p.roller.profile_k = 2.0;
+  p.effects.quadrature = 0, p.effects.n_slices = RIG_SLICES;
+  p.cage.mass = 0.2, p.cage.inertia_axial = 3.9e-4, p.cage.inertia_transverse = 2.1e-4, p.cage.offset = 0, p.cage.rail_offset = 12e-3;
+  p.oil.viscosity = 0.0346, p.oil.pressure_coefficient = 1.97e-8, p.oil.temperature_coefficient = 0.0392, p.oil.conductivity = 0.134,
+  p.oil.temperature = 60;
+  p.oil.viscosity_law = 0, p.oil.dicke_a = 327.79, p.oil.dicke_b = 2.9862, p.oil.dicke_c = 4.419e-3, p.oil.dicke_d = 3.0115e-4,
+  p.oil.viscosity_exponent_cap = 25;
+  p.oil.eyring_stress = 5e6, p.oil.shear_modulus_floor = 1e7, p.effects.starvation_factor = 1, p.effects.supply = 1;
+  p.friction.lambda_boundary = 0.01, p.friction.lambda_full = 1.5, p.friction.boundary_limit = 0.1, p.friction.rib_boundary_limit = 0.1,
+  p.friction.boundary_slope = 22.28, p.friction.boundary_decay = 181.46;
+  p.friction.dry_friction = 0.1, p.friction.coulomb_speed = 0.01, p.friction.cage_entrainment_speed = 0.05, p.friction.speed_floor = 1e-3,
+  p.friction.thermal_floor = 0.05;
+  p.oil.density = 860.6, p.effects.drag_coefficient = 1;
+  p.friction.asperity_factor = 2.32, p.friction.asperity_exponent = 0.97, p.friction.rib_asperity_factor = 1.90,
+  p.friction.rib_asperity_exponent = 0.99;
+  p.land.offset = 12e-3, p.land.inner_radius = 39.5e-3, p.land.outer_radius = 50.5e-3, p.land.width = 3e-3;
+  p.land.clearance = 0.1e-3, p.land.contact_film = 1e-6, p.land.fill = 1;
+  p.friction.rolling_blend = 0.1, p.effects.damping_race = 0.1, p.pocket.damping = 0.5, p.effects.film_damping = 1e-5,
+  p.effects.film_damping_depth = 3e-7;
+  p.effects.with_cage = 1, p.effects.lubrication = 2, p.effects.traction = 2, p.effects.thermal = 1, p.effects.rolling_resistance = 1,
+  p.effects.back_rib = 1, p.effects.front_rib = 1;
+  p.pocket.bars = 1, p.pocket.ends = 1, p.pocket.edges = 1;
   return p;
 }
 
 trb_params rig_cylinder(void)
 {
   trb_params p = rig_params();
-  p.cup_half_angle = 0.0, p.end_radius = 0.7, p.rib_clearance = 20e-6, p.outer_rib = p.outer_front_rib = 1;
+  p.bearing.cup_half_angle = 0.0, p.roller.end_radius = 0.7, p.rib.clearance = 20e-6, p.rib.outer = p.rib.outer_front = 1;
   return p;
 }
 
@@ -68,13 +75,13 @@ trb_model *rig_model(const trb_params *params)
   trb_model  *model;
   trb_message message = {TRB_OK, ""};
   rig_faces(params, faces);
-  need(trb_model_create(params, deviation, (int)params->n_rollers, faces, RIG_FACES, &model, &message), &message);
+  need(trb_model_create(params, deviation, (int)params->bearing.n_rollers, faces, RIG_FACES, &model, &message), &message);
   return model;
 }
 
 double *rig_modes(const trb_model *m, int *columns)
 {
-  const int          n = (int)m->params.cage_modes;
+  const int          n = (int)m->params.cage.n_modes;
   unsigned long long seed = 5;
   const int          shapes_end = TRB_MODE_shapes + TRB_SHAPE * m->n_rollers * m->n_slots;
   *columns = shapes_end + n;
@@ -105,7 +112,7 @@ trb_system *rig_system(const trb_params *params)
   trb_message message = {TRB_OK, ""};
   int         columns;
   double     *rows = rig_modes(model, &columns);
-  need(trb_model_set_modes(model, rows, (int)params->cage_modes, columns, &message), &message);
+  need(trb_model_set_modes(model, rows, (int)params->cage.n_modes, columns, &message), &message);
   free(rows);
   need(trb_system_tapered(model, &system, &message), &message);
   return system;

@@ -18,7 +18,7 @@ trb_params rig_cylinder(void);
 void rig_faces(const trb_params *params, trb_face faces[RIG_FACES]);
 /* A model of the parameters with the rig's faces and equal rollers; ends the program where that fails. */
 trb_model *rig_model(const trb_params *params);
-/* Rows of modes, as many as params.cage_modes says, for trb_model_set_modes: no cage's, but with all parts of a shape; freed by free. */
+/* Rows of modes, as many as params.cage.n_modes says, for trb_model_set_modes: no cage's, but with all parts of a shape; freed by free. */
 double *rig_modes(const trb_model *model, int *columns);
 /* A system of such a model, with these modes; rig_free frees both. */
 trb_system *rig_system(const trb_params *params);

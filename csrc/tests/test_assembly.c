@@ -58,7 +58,7 @@ static pair_of *open_pair(const trb_params params[N], const double sense[N])
     p->alone[k] = rig_system(&params[k]);
     systems[k] = p->alone[k];
     p->displacement[k] = rig_state(p->alone[k], axial_load, sense[k] * speed, p->own[k]);
-    p->motion[k] = motion_of(p->displacement[k], sense[k] * speed, params[k].outer_free > 0.0 ? 0.1 : 0.0);
+    p->motion[k] = motion_of(p->displacement[k], sense[k] * speed, params[k].outer_ring.free > 0.0 ? 0.1 : 0.0);
   }
   if (trb_assembly_make(systems, N, &p->together, NULL) != TRB_OK) exit(1);
   for (int k = 0; k < N; k++) {
@@ -97,7 +97,7 @@ static void test_apart(void)
   static double whole[ROOM][ROOM], one[ROOM][ROOM];
   const double  sense[N] = {1.0, -0.5};
   trb_params    params[N] = {rig_params(), rig_params()};
-  params[1].n_rollers = 9, params[1].viscosity *= 3.0, params[1].damping = 1.0, params[1].cage_mass *= 2.0;
+  params[1].bearing.n_rollers = 9, params[1].oil.viscosity *= 3.0, params[1].effects.damping = 1.0, params[1].cage.mass *= 2.0;
   pair_of          *p = open_pair(params, sense);
   const trb_system *members[N] = {&p->together.members[0], &p->together.members[1]};
   double            rates[ROOM], expected[ROOM], own[ROOM];
@@ -145,21 +145,21 @@ static const double housing_damping = 30.0, housing_stiffness = 5e7;
 static trb_params on_shaft(int k, int housed)
 {
   trb_params p = rig_params();
-  p.ring_free = 1.0;
-  p.ring_mass = 3.0;
-  p.ring_inertia_axial = 2e-3, p.ring_inertia_transverse = 9e-3;
-  p.ring_offset = k == 0 ? -0.045 : -0.03;
-  p.damping = 1.0;
-  if (k > 0) p.ring_carried = p.ring_turned = 1.0;
+  p.inner_ring.free = 1.0;
+  p.inner_ring.mass = 3.0;
+  p.inner_ring.inertia_axial = 2e-3, p.inner_ring.inertia_transverse = 9e-3;
+  p.inner_ring.offset = k == 0 ? -0.045 : -0.03;
+  p.effects.damping = 1.0;
+  if (k > 0) p.inner_ring.carried = p.inner_ring.turned = 1.0;
   if (!housed) return p;
-  p.outer_free = p.outer_turns = 1.0;
-  p.outer_mass = 5.0;
-  p.outer_inertia_axial = 8e-3, p.outer_inertia_transverse = 2e-2;
-  p.outer_offset = k == 0 ? -0.02 : -0.055;
-  if (k > 0) p.outer_carried = p.outer_turned = 1.0;
+  p.outer_ring.free = p.outer_ring.turns = 1.0;
+  p.outer_ring.mass = 5.0;
+  p.outer_ring.inertia_axial = 8e-3, p.outer_ring.inertia_transverse = 2e-2;
+  p.outer_ring.offset = k == 0 ? -0.02 : -0.055;
+  if (k > 0) p.outer_ring.carried = p.outer_ring.turned = 1.0;
   if (k > 0) return p;
-  p.outer_damping = housing_damping;
-  p.outer_support_axial = housing_stiffness, p.outer_support_radial = housing_stiffness;
+  p.outer_ring.damping = housing_damping;
+  p.outer_ring.support_axial = housing_stiffness, p.outer_ring.support_radial = housing_stiffness;
   return p;
 }
 
@@ -170,7 +170,7 @@ static pair_of *open_shaft(int housed)
   trb_params          params[N] = {on_shaft(0, housed), on_shaft(1, housed)};
   const double        sense[N] = {1.0, -1.0};
   pair_of            *first = open_pair(params, sense);
-  params[1].ring_shift = first->displacement[0] + first->displacement[1];
+  params[1].inner_ring.shift = first->displacement[0] + first->displacement[1];
   close_pair(first);
   pair_of *p = open_pair(params, sense);
   double  *shaft = p->y + p->together.members[0].bodies[TRB_BODY_INNER_RING].first;

@@ -235,7 +235,7 @@ static void test_offset_of_a_ring(const trb_system *system)
 static void test_speeds_of_a_housing(void)
 {
   trb_params p = rig_params();
-  p.outer_free = 1.0, p.outer_mass = 5.0, p.outer_inertia_axial = 1e-2, p.outer_inertia_transverse = 1e-2;
+  p.outer_ring.free = 1.0, p.outer_ring.mass = 5.0, p.outer_ring.inertia_axial = 1e-2, p.outer_ring.inertia_transverse = 1e-2;
   trb_system           *system = rig_system(&p);
   const trb_geometry   *g = &system->model->geometry;
   const trb_ring_offset offsets[TRB_MOST_BODIES] = {{.speed = 0.0}};
@@ -257,7 +257,7 @@ static void test_speeds_add_up(const trb_system *system)
   static const int      velocities[] = {TRB_ROLLER_v_r,     TRB_ROLLER_v_t,     TRB_ROLLER_v_z,
                                         TRB_ROLLER_omega_n, TRB_ROLLER_omega_t, TRB_ROLLER_omega_a};
   const trb_params     *p = &system->model->params;
-  const double          reach = p->total_length + p->roller_diameter, from[TRB_ROLLER_SIZE] = {0}, speed = 1e-3;
+  const double          reach = p->roller.total_length + p->roller.diameter, from[TRB_ROLLER_SIZE] = {0}, speed = 1e-3;
   const trb_body_at     bodies[TRB_MOST_BODIES] = {{.rests = 1}};
   const trb_ring_offset offsets[TRB_MOST_BODIES] = {{.speed = 0.0}, {.speed = 0.1}};
   trb_speed_bound       bound;
@@ -280,7 +280,7 @@ static void test_speeds_add_up(const trb_system *system)
 int main(void)
 {
   trb_params p = rig_params();
-  p.front_rib_clearance = 20e-6;
+  p.rib.front_clearance = 20e-6;
   test_rings(&p, 3000.0);
   p = rig_cylinder();
   test_rings(&p, 3000.0);

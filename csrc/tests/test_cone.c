@@ -104,10 +104,10 @@ static void test_of_a_bearing(void)
   CHECK(trb_geometry_derive(&p, &g, NULL) == TRB_OK);
   trb_surfaces_build(&p, &g, &s);
   const trb_vec3 axis = trb_v(sin(g.roller_axis_angle), 0, cos(g.roller_axis_angle));
-  const trb_vec3 x = trb_axpy(trb_v(0.5 * p.pitch_diameter, 0, g.centre_plane), g.roller_mass_offset, axis);
+  const trb_vec3 x = trb_axpy(trb_v(0.5 * p.bearing.pitch_diameter, 0, g.centre_plane), g.roller_mass_offset, axis);
   const trb_vec3 inner = trb_v(0, 0, g.centre_plane), ring[TRB_N_RACES] = {none, inner};
   for (int i = -10; i <= 10; i++) {
-    const double     station = 0.05 * i * p.effective_length;
+    const double     station = 0.05 * i * p.roller.effective_length;
     const trb_sphere node = trb_sphere_inscribed(&s.flank, station, trb_cone_radius(&s.flank, station));
     const trb_vec3   centre = trb_axpy(x, node.place, axis);
     CHECK_RELATIVE(trb_cone_radius(&s.flank, station), (g.apex_to_mid + station) * tan(g.roller_half_angle), 1e-13);
@@ -115,7 +115,7 @@ static void test_of_a_bearing(void)
       CHECK_NEAR(trb_cone_at(&s.race[race], k, trb_sub(centre, trb_cone_point(&s.race[race], ring[race], k))).beyond, -node.radius, 1e-16);
   }
   /* raceways through the apex */
-  CHECK_RELATIVE(s.race[TRB_RACE_OUTER].radius, g.centre_plane * tan(p.cup_half_angle), 1e-13);
+  CHECK_RELATIVE(s.race[TRB_RACE_OUTER].radius, g.centre_plane * tan(p.bearing.cup_half_angle), 1e-13);
   CHECK_RELATIVE(s.race[TRB_RACE_INNER].radius, g.centre_plane * tan(g.cone_half_angle), 1e-13);
   trb_rib_place rib;
   CHECK(trb_place_rib(&p, &g, TRB_RACE_INNER, TRB_END_LARGE, &rib, NULL) == TRB_OK);
@@ -126,12 +126,12 @@ static void test_of_a_bearing(void)
   CHECK_NEAR(foot.beyond, -s.end[TRB_END_LARGE].radius, 1e-16);
   CHECK_NEAR(contact.x, g.rib_contact_radius, 1e-15);
   CHECK_NEAR(contact.z, g.rib_contact_z, 1e-15);
-  CHECK_NEAR(-trb_cone_at(&s.race[TRB_RACE_INNER], k, trb_sub(contact, inner)).beyond, p.rib_contact_height, 2e-15);
+  CHECK_NEAR(-trb_cone_at(&s.race[TRB_RACE_INNER], k, trb_sub(contact, inner)).beyond, p.rib.contact_height, 2e-15);
   /* the front rib's edges lie on a plane across the nominal roller's axis, at their heights above the raceway */
   for (int i = 0; i < 2; i++) {
     const trb_vec3 edge = trb_add(inner, trb_v(s.front_rib[i].radius, 0, s.front_rib[i].place));
-    CHECK_NEAR(trb_dot(trb_sub(edge, trb_axpy(x, s.small_end, axis)), axis), -p.front_rib_clearance, 1e-16);
-    CHECK_NEAR(-trb_cone_at(&s.race[TRB_RACE_INNER], k, trb_sub(edge, inner)).beyond, i == 0 ? p.front_rib_low : p.front_rib_high, 1e-16);
+    CHECK_NEAR(trb_dot(trb_sub(edge, trb_axpy(x, s.small_end, axis)), axis), -p.rib.front_clearance, 1e-16);
+    CHECK_NEAR(-trb_cone_at(&s.race[TRB_RACE_INNER], k, trb_sub(edge, inner)).beyond, i == 0 ? p.rib.front_low : p.rib.front_high, 1e-16);
   }
 }
 
@@ -140,21 +140,21 @@ static void test_towards_a_cylinder(void)
 {
   trb_params   p = rig_params();
   trb_geometry g;
-  const double outer = 0.5 * (p.pitch_diameter + p.roller_diameter), inner = 0.5 * (p.pitch_diameter - p.roller_diameter);
+  const double outer = 0.5 * (p.bearing.pitch_diameter + p.roller.diameter), inner = 0.5 * (p.bearing.pitch_diameter - p.roller.diameter);
   for (double angle = 1e-2; angle > 1e-10; angle *= 0.1) {
-    p.cup_half_angle = angle;
+    p.bearing.cup_half_angle = angle;
     CHECK(trb_geometry_derive(&p, &g, NULL) == TRB_OK);
     const trb_cone cup = trb_raceway_cone(&p, &g, TRB_RACE_OUTER, 0.0), cone = trb_raceway_cone(&p, &g, TRB_RACE_INNER, 0.0);
     const double   bound = 2.0 * angle * angle + 1e-15;
     CHECK_RELATIVE(cup.radius, outer, bound);
     CHECK_RELATIVE(cone.radius, inner, bound);
-    CHECK_RELATIVE(g.large_end_diameter, p.roller_diameter, 2.0 * angle);
-    CHECK_RELATIVE(g.outer_equivalent_radius, 1.0 / (2.0 / p.roller_diameter - 1.0 / outer), bound);
-    CHECK_RELATIVE(g.inner_equivalent_radius, 1.0 / (2.0 / p.roller_diameter + 1.0 / inner), bound);
-    CHECK_RELATIVE(g.cage_speed_ratio, inner / p.pitch_diameter, bound);
-    CHECK_RELATIVE(g.roller_spin_ratio, 2.0 * inner * outer / (p.pitch_diameter * p.roller_diameter), bound);
-    CHECK_RELATIVE(g.roller_mass, p.roller_density * 0.25 * TRB_PI * p.roller_diameter * p.roller_diameter * p.total_length, bound);
-    CHECK_NEAR(g.roller_mass_offset, 0.0, angle * p.total_length);
+    CHECK_RELATIVE(g.large_end_diameter, p.roller.diameter, 2.0 * angle);
+    CHECK_RELATIVE(g.outer_equivalent_radius, 1.0 / (2.0 / p.roller.diameter - 1.0 / outer), bound);
+    CHECK_RELATIVE(g.inner_equivalent_radius, 1.0 / (2.0 / p.roller.diameter + 1.0 / inner), bound);
+    CHECK_RELATIVE(g.cage_speed_ratio, inner / p.bearing.pitch_diameter, bound);
+    CHECK_RELATIVE(g.roller_spin_ratio, 2.0 * inner * outer / (p.bearing.pitch_diameter * p.roller.diameter), bound);
+    CHECK_RELATIVE(g.roller_mass, p.roller.density * 0.25 * TRB_PI * p.roller.diameter * p.roller.diameter * p.roller.total_length, bound);
+    CHECK_NEAR(g.roller_mass_offset, 0.0, angle * p.roller.total_length);
   }
 }
 

@@ -123,14 +123,14 @@ int main(void)
 {
   trb_params p = rig_params();
   /* without friction and edges nothing is left out: loads of kilonewtons, too */
-  p.lubrication = 0, p.dry_friction = 0, p.pocket_edges = 0;
+  p.effects.lubrication = 0, p.friction.dry_friction = 0, p.pocket.edges = 0;
   for (int side = -1; side <= 1; side++) check_scene(&p, 3000.0, 1e-3 * side, &(bound){2e-3, 1e-3});
   /* at edges normals turn; sliding turns with the bodies */
   p = rig_params();
   check_scene(&p, 30.0, 0.0, &(bound){3e-2, 1e-4});
-  p.lubrication = 0, p.dry_friction = 0.1;
+  p.effects.lubrication = 0, p.friction.dry_friction = 0.1;
   check_scene(&p, 30.0, 0.0, &(bound){3e-2, 1e-4});
-  p.damping = 1, p.damping_cage = 2.0;
+  p.effects.damping = 1, p.pocket.damping = 2.0;
   check_scene(&p, 30.0, 0.0, &(bound){3e-2, 1e-4});
   return check_report();
 }

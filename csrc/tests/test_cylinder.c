@@ -31,8 +31,8 @@ static void set_up(bench *b, int race, double half_angle)
 {
   const trb_params *p = &b->m->params;
   const double      side = side_of(race);
-  b->own = 0.5 * p->roller_diameter;
-  b->pitch = 0.5 * p->pitch_diameter;
+  b->own = 0.5 * p->roller.diameter;
+  b->pitch = 0.5 * p->bearing.pitch_diameter;
   b->cone = trb_cone_of(0.0, b->pitch + side * b->own, half_angle, side);
   b->nodes = b->m->race[race];
   b->nodes.radius = b->radius, b->nodes.log_radius = b->log_radius, b->nodes.roller_share = b->share;
@@ -56,7 +56,7 @@ static void evaluate(bench *b)
 /* Palmgren's load of a node at an interference. */
 static double load_of(const bench *b, int k, double d)
 {
-  const double length = b->m->params.effective_length, modulus = b->m->geometry.effective_modulus;
+  const double length = b->m->params.roller.effective_length, modulus = b->m->geometry.effective_modulus;
   return d > 0.0 ? 0.356 * modulus * pow(length, -1.0 / 9.0) * b->nodes.weight[k] * pow(d, 10.0 / 9.0) : 0.0;
 }
 
@@ -82,7 +82,7 @@ static void test_square(bench *b, int race)
   CHECK_NEAR(b->out.force.x, -side * load, 1e-11 * load);
   CHECK_NEAR(b->out.force.y, 0.0, 1e-12 * load);
   CHECK_NEAR(b->out.force.z, 0.0, 1e-12 * load);
-  CHECK_NEAR(trb_norm(b->out.moment), 0.0, 1e-12 * load * b->m->params.effective_length);
+  CHECK_NEAR(trb_norm(b->out.moment), 0.0, 1e-12 * load * b->m->params.roller.effective_length);
   CHECK_NEAR(b->out.ring_force.x, side * load, 1e-11 * load);
   CHECK_RELATIVE(b->out.elastic, 9.0 / 19.0 * load * DEPTH, 1e-11);
   b->roller.x.x -= 2.0 * side * DEPTH;
@@ -107,7 +107,7 @@ static void test_leaning(bench *b, int race)
   CHECK(load > 0.0);
   CHECK_NEAR(b->out.force.x, fx, 1e-11 * load);
   CHECK_NEAR(b->out.force.z, 0.0, 1e-12 * load);
-  CHECK_NEAR(b->out.moment.y, my, 1e-11 * load * b->m->params.effective_length);
+  CHECK_NEAR(b->out.moment.y, my, 1e-11 * load * b->m->params.roller.effective_length);
   b->roller.frame = trb_tilted_frame(skew, 0.0);
   evaluate(b);
   for (int k = 0; k < b->m->n_nodes; k++) {
@@ -120,8 +120,8 @@ static void test_leaning(bench *b, int race)
 /* Dry friction of a roller that is dragged round without turning; and none where the cylinders roll. */
 static void test_motion(bench *b, int race)
 {
-  const double side = side_of(race), speed = 2.0, turn = b->m->params.coulomb_speed;
-  const double mu = b->m->params.dry_friction * speed / hypot(speed, turn);
+  const double side = side_of(race), speed = 2.0, turn = b->m->params.friction.coulomb_speed;
+  const double mu = b->m->params.friction.dry_friction * speed / hypot(speed, turn);
   set_up(b, race, 0.0);
   b->roller.v = trb_v(0, speed, 0);
   evaluate(b);
@@ -160,9 +160,9 @@ static void test_limit(bench *b, int race)
       const double d = DEPTH - side * b->m->station[k] * angle;
       CHECK_NEAR(b->work->lanes->interference[k], d, 0.5 * angle * angle * b->own + 3e-17);
     }
-    CHECK_NEAR(b->out.force.z, side * load * angle, load * (3.0 * angle * angle * b->m->params.effective_length / DEPTH + 1e-12));
+    CHECK_NEAR(b->out.force.z, side * load * angle, load * (3.0 * angle * angle * b->m->params.roller.effective_length / DEPTH + 1e-12));
     CHECK_NEAR(b->out.force.x, force.x, load * (angle * angle * 2e5 + 1e-11));
-    CHECK_NEAR(trb_norm(trb_sub(b->out.moment, moment)), 0.0, load * b->m->params.effective_length * (1e3 * angle + 1e-11));
+    CHECK_NEAR(trb_norm(trb_sub(b->out.moment, moment)), 0.0, load * b->m->params.roller.effective_length * (1e3 * angle + 1e-11));
   }
 }
 
@@ -170,7 +170,7 @@ int main(void)
 {
   trb_params   p = rig_params();
   static bench b;
-  p.lubrication = TRB_LUBRICATION_DRY, p.dry_friction = 0.1, p.rolling_resistance = 0.0, p.damping = 0.0;
+  p.effects.lubrication = TRB_LUBRICATION_DRY, p.friction.dry_friction = 0.1, p.effects.rolling_resistance = 0.0, p.effects.damping = 0.0;
   trb_system      *system = rig_system(&p);
   const trb_model *m = system->model;
   CHECK(m->n_lanes <= MOST);

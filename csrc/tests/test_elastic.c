@@ -16,7 +16,7 @@ static unsigned long long seed = 77;
 static trb_params params_of(int n)
 {
   trb_params p = rig_params();
-  p.cage_modes = n;
+  p.cage.n_modes = n;
   return p;
 }
 
@@ -63,7 +63,7 @@ static void test_refused(void)
   free(rows);
   trb_model_free(m);
   rig_faces(&p, faces);
-  p.planar = 1;
+  p.effects.planar = 1;
   CHECK(trb_model_create(&p, deviation, 12, faces, RIG_FACES, &m, &message) == TRB_ERR_INPUT);
   CHECK_SAYS(message.text, "planar");
 }
@@ -73,7 +73,7 @@ static void test_undeformed(void)
 {
   trb_params p = params_of(0);
   rig_bench  rigid = rig_open(&p, 4930.0);
-  p.cage_modes = 3;
+  p.cage.n_modes = 3;
   rig_bench soft = rig_open(&p, 4930.0);
   double    y[ROOM] = {0}, rates[2][ROOM];
   int       pushed = 0;
@@ -101,7 +101,7 @@ static double energy_at(trb_dynamics *d, const double *y)
 static void test_power(int n, double amplitude, double lubrication, double damping)
 {
   trb_params p = params_of(n);
-  p.lubrication = lubrication, p.damping = damping;
+  p.effects.lubrication = lubrication, p.effects.damping = damping;
   rig_bench b = rig_open(&p, 4930.0);
   for (int trial = 0; trial < 20; trial++) {
     double       y[ROOM] = {0}, rates[ROOM], near[2][ROOM] = {{0}}, power = 0.0, size = 1.0;
@@ -217,7 +217,7 @@ static void test_ways(void)
 static void test_steps(const char *method)
 {
   trb_params p = params_of(4);
-  p.damping = 1;
+  p.effects.damping = 1;
   rig_bench    b = rig_open(&p, 4930.0);
   trb_settings settings = rig_settings();
   settings.rtol = 1e-7, settings.atol_position = 1e-13, settings.atol_velocity = 1e-8, settings.atol_angle = 1e-11,

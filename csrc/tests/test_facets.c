@@ -73,7 +73,7 @@ static rig_bench set_up(const trb_params *p, const division *by)
   double  drops[3 * 200] = {0};
   for (int k = 2; k < model->n_nodes - 2; k++) drops[k] = -bulge;
   const int made = trb_model_set_drops(model, drops, bulge > 0.0 ? 3 : 0, model->n_nodes, &message) == TRB_OK &&
-                   trb_model_set_modes(model, rows, (int)p->cage_modes, columns, &message) == TRB_OK &&
+                   trb_model_set_modes(model, rows, (int)p->cage.n_modes, columns, &message) == TRB_OK &&
                    trb_system_tapered(model, &b.system, &message) == TRB_OK &&
                    trb_dynamics_create(b.system, b.motion, "scalar", &b.d, NULL) == TRB_OK;
   free(rows);
@@ -203,18 +203,18 @@ int main(void)
   const division divisions[] = {{17, 1, 20e-3, 5}, {9, 2, -7.2e-3, 1}, {3, 1, 0.0, 9}, {2, 80, 0.0, 2}};
   for (int i = 0; i < 4; i++) {
     trb_params p = rig_params();
-    p.n_slices = 16, p.profile = i % 2 == 0 ? TRB_PROFILE_STRAIGHT : p.profile;
+    p.effects.n_slices = 16, p.roller.profile = i % 2 == 0 ? TRB_PROFILE_STRAIGHT : p.roller.profile;
     happened seen = test_same_forces(&p, &divisions[i]);
     CHECK(seen.clear > 50 && seen.touching > 300 && seen.apart > 100 && seen.films == 0);
-    p.pocket_film = 3e-5;
+    p.pocket.film = 3e-5;
     seen = test_same_forces(&p, &divisions[i]);
     CHECK(seen.clear > 50 && seen.touching > 300 && seen.films > 300);
-    p.cage_modes = 3;
+    p.cage.n_modes = 3;
     seen = test_same_forces(&p, &divisions[i]);
     CHECK(seen.touching > 300 && seen.films > 300);
   }
   trb_params p = rig_params();
-  p.profile = TRB_PROFILE_STRAIGHT, p.n_slices = 16, bulge = 4e-6;
+  p.roller.profile = TRB_PROFILE_STRAIGHT, p.effects.n_slices = 16, bulge = 4e-6;
   CHECK(test_same_forces(&p, &divisions[0]).touching > 300);
   bulge = 0.0, p = rig_cylinder();
   CHECK(test_same_forces(&p, &divisions[0]).touching > 300);

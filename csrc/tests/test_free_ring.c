@@ -17,14 +17,15 @@ static unsigned long long seed = 51;
 static trb_params params_of(double free, double mass)
 {
   trb_params p = rig_params();
-  p.ring_free = free;
-  p.ring_mass = mass;
-  p.ring_inertia_axial = 8e-4 * mass, p.ring_inertia_transverse = 5e-4 * mass;
-  p.ring_offset = 4e-3;
-  p.ring_unbalance = 2e-5, p.ring_unbalance_angle = 0.4;
-  p.ring_damping = 30.0, p.ring_damping_turns = 0.02;
-  p.ring_support_radial = 3e7, p.ring_support_axial = 2e7, p.ring_support_tilt = 5e3, p.ring_support_position = 0.03;
-  p.damping = 1.0;
+  p.inner_ring.free = free;
+  p.inner_ring.mass = mass;
+  p.inner_ring.inertia_axial = 8e-4 * mass, p.inner_ring.inertia_transverse = 5e-4 * mass;
+  p.inner_ring.offset = 4e-3;
+  p.inner_ring.unbalance = 2e-5, p.inner_ring.unbalance_angle = 0.4;
+  p.inner_ring.damping = 30.0, p.inner_ring.damping_turns = 0.02;
+  p.inner_ring.support_radial = 3e7, p.inner_ring.support_axial = 2e7, p.inner_ring.support_tilt = 5e3,
+  p.inner_ring.support_position = 0.03;
+  p.effects.damping = 1.0;
   return p;
 }
 
@@ -169,10 +170,10 @@ static void test_heavy(void)
   /* finer than usual, as the cage's hits enlarge what the two integrations leave */
   settings.rtol *= 0.2, settings.atol_position *= 0.2, settings.atol_velocity *= 0.2, settings.atol_angle *= 0.2, settings.atol_spin *= 0.2;
   for (int k = 0; k < 2; k++) {
-    p[k].ring_unbalance = p[k].ring_offset = 0.0;
+    p[k].inner_ring.unbalance = p[k].inner_ring.offset = 0.0;
     trb_system  *system = rig_system(&p[k]);
     const double displacement = k == 0 ? start_of(system, y[k]) : rig_state(system, axial_load, speed, y[k]);
-    trb_motion  *motion = motion_of(displacement, 0.0, k == 0 ? 9.80665 * p[k].ring_mass : 0.0);
+    trb_motion  *motion = motion_of(displacement, 0.0, k == 0 ? 9.80665 * p[k].inner_ring.mass : 0.0);
     y[k][rig_cage(system) + TRB_CAGE_v_x] = 0.1;
     trb_simulation *sim = rig_simulation(system, motion, "bdf", &settings, y[k]);
     rig_run(sim, 4e-3);
@@ -199,7 +200,7 @@ static void test_refused(void)
   trb_face    faces[RIG_FACES];
   trb_params  p = params_of(1.0, 0.0);
   rig_faces(&p, faces);
-  CHECK(trb_model_create(&p, deviation, (int)p.n_rollers, faces, RIG_FACES, &model, &message) == TRB_ERR_INPUT);
+  CHECK(trb_model_create(&p, deviation, (int)p.bearing.n_rollers, faces, RIG_FACES, &model, &message) == TRB_ERR_INPUT);
   CHECK_SAYS(message.text, "ring_mass = 0: must be above 0 for a free ring");
 }
 

@@ -26,9 +26,9 @@ static void test_rig(void)
   CHECK_NEAR(g.cage_speed_ratio, 0.41662, 0.5e-5);
   CHECK_NEAR(g.roller_spin_ratio, 2.8606, 0.5e-4);
   /* the frustum: exact formulas */
-  const double a = 0.5 * p.total_length, r1 = tan(g.roller_half_angle) * (g.apex_to_mid - a),
+  const double a = 0.5 * p.roller.total_length, r1 = tan(g.roller_half_angle) * (g.apex_to_mid - a),
                r2 = tan(g.roller_half_angle) * (g.apex_to_mid + a);
-  CHECK_RELATIVE(g.roller_mass, p.roller_density * TRB_PI / 3.0 * p.total_length * (r1 * r1 + r1 * r2 + r2 * r2), 1e-13);
+  CHECK_RELATIVE(g.roller_mass, p.roller.density * TRB_PI / 3.0 * p.roller.total_length * (r1 * r1 + r1 * r2 + r2 * r2), 1e-13);
   CHECK_RELATIVE(g.roller_inertia_axial, 0.3 * g.roller_mass * (pow(r2, 5) - pow(r1, 5)) / (pow(r2, 3) - pow(r1, 3)), 1e-12);
   CHECK_RELATIVE(g.small_end_radius, r1, 1e-14);
 }
@@ -39,7 +39,7 @@ static void test_rolling(void)
   const trb_params p = rig_params();
   trb_geometry     g;
   CHECK(trb_geometry_derive(&p, &g, NULL) == TRB_OK);
-  const double orbit = g.cage_speed_ratio, spin = g.roller_spin_ratio, radius = 0.5 * p.roller_diameter;
+  const double orbit = g.cage_speed_ratio, spin = g.roller_spin_ratio, radius = 0.5 * p.roller.diameter;
   /* in the cage's frame the races turn by -orbit and 1 - orbit, the roller by spin */
   CHECK_RELATIVE(spin * radius * cos(g.roller_half_angle) / cos(g.roller_half_angle), orbit * g.outer_race_radius, 1e-12);
   CHECK_RELATIVE(spin * radius, (1.0 - orbit) * g.inner_race_radius, 1e-12);
@@ -58,22 +58,22 @@ static void fails(trb_params p, const char *says)
 static void test_what_does_not_fit(void)
 {
   trb_params p = rig_params();
-  p.roller_diameter = 0.09, p.pitch_diameter = 0.08;
+  p.roller.diameter = 0.09, p.bearing.pitch_diameter = 0.08;
   fails(p, "cup_half_angle");
   p = rig_params();
-  p.total_length = 19e-3;
+  p.roller.total_length = 19e-3;
   fails(p, "total_length");
   p = rig_params();
-  p.total_length = 0.5;
+  p.roller.total_length = 0.5;
   fails(p, "beyond the apex");
   p = rig_params();
-  p.n_rollers = 19;
+  p.bearing.n_rollers = 19;
   fails(p, "n_rollers = 19: rollers of 0.014 m overlap");
   p = rig_params();
-  p.cup_half_angle = 0.5, p.rib_contact_height = 0.0149, p.sphere_ratio = 0.05;
+  p.bearing.cup_half_angle = 0.5, p.rib.contact_height = 0.0149, p.roller.sphere_ratio = 0.05;
   fails(p, "does not touch the rib there");
   p = rig_params();
-  p.sphere_ratio = 0.05;
+  p.roller.sphere_ratio = 0.05;
   fails(p, "rib_contact_height");
 }
 
@@ -84,8 +84,8 @@ static void test_without_oil(void)
   trb_params       p = given;
   trb_geometry     g, bare;
   trb_surfaces     s, of_bare;
-  for (double *value = &p.viscosity; value < (double *)(&p + 1); value++) *value = NAN;
-  CHECK(isfinite(p.cage_mass) && isnan(p.oil_fill) && isnan(p.front_rib) && isnan(p.temperature));
+  for (double *value = &p.oil.viscosity; value < (double *)(&p + 1); value++) *value = NAN;
+  CHECK(isfinite(p.cage.mass) && isnan(p.effects.oil_fill) && isnan(p.effects.front_rib) && isnan(p.oil.temperature));
   memset(&s, 0, sizeof s), memset(&of_bare, 0, sizeof of_bare);
   CHECK(trb_geometry_derive(&given, &g, NULL) == TRB_OK && trb_geometry_derive(&p, &bare, NULL) == TRB_OK);
   trb_surfaces_build(&given, &g, &s);

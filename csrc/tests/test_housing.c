@@ -16,15 +16,16 @@ static unsigned long long seed = 91;
 static trb_params params_of(double inner_free, double mass)
 {
   trb_params p = rig_params();
-  p.outer_free = 1.0;
-  p.outer_mass = mass;
-  p.outer_inertia_axial = 2e-3 * mass, p.outer_inertia_transverse = 1.5e-3 * mass;
-  p.outer_offset = 5e-3;
-  p.outer_damping = 40.0, p.outer_damping_turns = 0.03;
-  p.outer_support_radial = 4e7, p.outer_support_axial = 3e7, p.outer_support_tilt = 8e3, p.outer_support_position = -0.01;
-  p.damping = 1.0;
-  p.ring_free = inner_free;
-  p.ring_mass = 0.7, p.ring_inertia_axial = 5e-4, p.ring_inertia_transverse = 3e-4;
+  p.outer_ring.free = 1.0;
+  p.outer_ring.mass = mass;
+  p.outer_ring.inertia_axial = 2e-3 * mass, p.outer_ring.inertia_transverse = 1.5e-3 * mass;
+  p.outer_ring.offset = 5e-3;
+  p.outer_ring.damping = 40.0, p.outer_ring.damping_turns = 0.03;
+  p.outer_ring.support_radial = 4e7, p.outer_ring.support_axial = 3e7, p.outer_ring.support_tilt = 8e3,
+  p.outer_ring.support_position = -0.01;
+  p.effects.damping = 1.0;
+  p.inner_ring.free = inner_free;
+  p.inner_ring.mass = 0.7, p.inner_ring.inertia_axial = 5e-4, p.inner_ring.inertia_transverse = 3e-4;
   return p;
 }
 
@@ -46,7 +47,7 @@ static trb_motion *motion_of(double displacement, double load, double gravity)
 static double start_of(const trb_system *system, double *y)
 {
   const double displacement = rig_state(system, axial_load, speed, y);
-  if (system->model->params.ring_free > 0.0) y[at_ring(system, TRB_BODY_INNER_RING) + TRB_FREE_RING_z] = displacement;
+  if (system->model->params.inner_ring.free > 0.0) y[at_ring(system, TRB_BODY_INNER_RING) + TRB_FREE_RING_z] = displacement;
   return displacement;
 }
 
@@ -125,8 +126,9 @@ static void test_momentum(void)
   trb_params   p = params_of(1.0, 3.0);
   trb_settings settings = rig_settings();
   double       y[ROOM] = {0};
-  p.rolling_pressure_force = 1.0;
-  p.outer_damping = p.outer_damping_turns = p.outer_support_radial = p.outer_support_axial = p.outer_support_tilt = 0.0;
+  p.effects.rolling_pressure_force = 1.0;
+  p.outer_ring.damping = p.outer_ring.damping_turns = p.outer_ring.support_radial = p.outer_ring.support_axial = p.outer_ring.support_tilt =
+      0.0;
   settings.rtol = 1e-7, settings.atol_position = 1e-13, settings.atol_velocity = 1e-8, settings.atol_angle = 1e-11,
   settings.atol_spin = 1e-6;
   trb_system *system = rig_system(&p);
@@ -155,7 +157,7 @@ static void test_heavy(void)
   trb_settings settings = rig_settings();
   trb_message  message = {TRB_OK, ""};
   double       y[2][ROOM] = {{0}}, end[2][ROOM];
-  p[1].outer_free = 0.0;
+  p[1].outer_ring.free = 0.0;
   for (int k = 0; k < 2; k++) {
     trb_system *system = rig_system(&p[k]);
     trb_motion *motion = motion_of(start_of(system, y[k]), -axial_load, 0.0);
@@ -189,7 +191,7 @@ static void test_refused(void)
   trb_face    faces[RIG_FACES];
   trb_params  p = params_of(0.0, 0.0);
   rig_faces(&p, faces);
-  CHECK(trb_model_create(&p, deviation, (int)p.n_rollers, faces, RIG_FACES, &model, &message) == TRB_ERR_INPUT);
+  CHECK(trb_model_create(&p, deviation, (int)p.bearing.n_rollers, faces, RIG_FACES, &model, &message) == TRB_ERR_INPUT);
   CHECK_SAYS(message.text, "outer_mass = 0: must be above 0 for a free ring");
 }
 

@@ -100,7 +100,7 @@ static scene open_scene(void)
 {
   trb_params p = rig_params();
   scene      s = {0};
-  p.guidance = TRB_GUIDANCE_INNER_LAND, p.damping = 1;
+  p.effects.guidance = TRB_GUIDANCE_INNER_LAND, p.effects.damping = 1;
   s.system = rig_system(&p);
   s.model = s.system->model;
   s.motion = rig_motion(rig_state(s.system, 4930.0, 100 * TRB_PI, s.y), 100 * TRB_PI);

@@ -46,7 +46,7 @@ static void compare(const trb_system *system, const char *variant, const trb_dyn
     }
     load += ribs[j].load;
     if (ribs[j].interference > 0.0) deepest = fmin(fmax(deepest, 1e-7), ribs[j].interference);
-    const double bound = ROUNDINGS * DBL_EPSILON * LENGTH / fmax(deepest, 1e-7), arm = 0.5 * m->params.pitch_diameter;
+    const double bound = ROUNDINGS * DBL_EPSILON * LENGTH / fmax(deepest, 1e-7), arm = 0.5 * m->params.bearing.pitch_diameter;
     near_vector("force", variant, b->roller.force, a->roller.force, load, bound);
     near_vector("moment", variant, b->roller.moment, a->roller.moment, load * arm, bound);
     near_vector("ring_force", variant, b->on[TRB_BODY_INNER_RING].force, a->on[TRB_BODY_INNER_RING].force, load, bound);
@@ -159,23 +159,23 @@ int main(void)
   test_choice();
   check_scene("paper", &p, speed);
   check_scene("standstill", &p, 0.0);
-  p.damping = 1, p.rolling_pressure_force = 1, p.rib_film = 1, p.quadrature = 1, p.n_slices = 16;
+  p.effects.damping = 1, p.effects.rolling_pressure_force = 1, p.effects.rib_film = 1, p.effects.quadrature = 1, p.effects.n_slices = 16;
   check_scene("standard", &p, speed);
-  p = paper, p.n_slices = 5, p.profile = 1, p.crown_radius = 30.0, p.starvation_factor = 0.2;
+  p = paper, p.effects.n_slices = 5, p.roller.profile = 1, p.roller.crown_radius = 30.0, p.effects.starvation_factor = 0.2;
   check_scene("starved", &p, speed);
-  p = paper, p.viscosity_law = 1, p.n_slices = 200;
+  p = paper, p.oil.viscosity_law = 1, p.effects.n_slices = 200;
   check_scene("roelands", &p, speed);
-  p = paper, p.viscosity_law = 2, p.n_slices = 1;
+  p = paper, p.oil.viscosity_law = 2, p.effects.n_slices = 1;
   check_scene("barus", &p, speed);
-  p = paper, p.lubrication = 3, p.traction = 1, p.thermal = 0;
+  p = paper, p.effects.lubrication = 3, p.effects.traction = 1, p.effects.thermal = 0;
   check_scene("coulomb", &p, speed);
-  p = paper, p.lubrication = 1, p.rolling_resistance = 0, p.thermal = 0;
+  p = paper, p.effects.lubrication = 1, p.effects.rolling_resistance = 0, p.effects.thermal = 0;
   check_scene("boundary", &p, speed);
-  p = paper, p.lubrication = 0, p.rolling_resistance = 0, p.thermal = 0;
+  p = paper, p.effects.lubrication = 0, p.effects.rolling_resistance = 0, p.effects.thermal = 0;
   check_scene("dry", &p, speed);
-  p = paper, p.lubrication = 3, p.traction = 0, p.rolling_resistance = 0;
+  p = paper, p.effects.lubrication = 3, p.effects.traction = 0, p.effects.rolling_resistance = 0;
   check_scene("frictionless", &p, speed);
-  p = paper, p.back_rib = 0, p.front_rib = 0, p.profile = 0;
+  p = paper, p.effects.back_rib = 0, p.effects.front_rib = 0, p.roller.profile = 0;
   check_scene("no ribs", &p, speed);
   return check_report();
 }

@@ -49,7 +49,7 @@ static trb_status make_model(trb_message *message)
   trb_model   *made = NULL;
   trb_status   status = trb_model_create(&params, deviation, 12, faces, RIG_FACES, &made, message);
   CHECK((made == NULL) == (status != TRB_OK));
-  if (status == TRB_OK) status = trb_model_set_modes(made, modes, (int)params.cage_modes, mode_columns, message);
+  if (status == TRB_OK) status = trb_model_set_modes(made, modes, (int)params.cage.n_modes, mode_columns, message);
   trb_model_free(made);
   return status;
 }
@@ -185,7 +185,7 @@ int main(void)
 {
   countdown = -1;
   params = rig_params();
-  params.cage_modes = 2;
+  params.cage.n_modes = 2;
   rig_faces(&params, faces);
   built = rig_system(&params);
   modes = rig_modes(built->model, &mode_columns);
@@ -203,7 +203,7 @@ int main(void)
   fail_in_steps();
   free(modes);
   rig_free(built);
-  params.cage_modes = 0;
+  params.cage.n_modes = 0;
   built = rig_system(&params);
   (void)rig_state(built, 4930.0, 314.0, state);
   fail_each("multirate", make_multirate);

@@ -36,7 +36,7 @@ static void test_contents(void)
   CHECK(m->first_face[0] == 0 && m->first_face[12] == 48 && m->first_face[5] == 20);
   CHECK(m->friction && m->film && m->pocket_friction);
   trb_params odd = p;
-  odd.n_slices = 5, odd.pocket_bars = 0;
+  odd.effects.n_slices = 5, odd.pocket.bars = 0;
   trb_model *n = rig_model(&odd);
   CHECK(n->n_nodes == 5 && n->n_lanes == TRB_LANE_PAD && n->first_face[12] == 24);
   for (int race = 0; race < TRB_N_RACES; race++) {
@@ -46,7 +46,7 @@ static void test_contents(void)
       CHECK_RELATIVE(exp(n->race[race].log_radius[k]), n->race[race].radius[k], 1e-14);
       sum += n->race[race].weight[k];
     }
-    CHECK_RELATIVE(sum, p.effective_length, 1e-14);
+    CHECK_RELATIVE(sum, p.roller.effective_length, 1e-14);
     CHECK((uintptr_t)n->race[race].weight % 64 == 0 && (uintptr_t)n->race[race].radius % 64 == 0);
   }
   CHECK_RELATIVE(n->race[TRB_RACE_OUTER].radius[2], n->geometry.outer_equivalent_radius, 1e-12);
@@ -84,25 +84,25 @@ static void test_combinations(void)
 {
   trb_params p = rig_params();
   CHECK(with(&p) == TRB_OK);
-  p.n_rollers = 12.5;
+  p.bearing.n_rollers = 12.5;
   refused(p, TRB_ERR_INPUT, "n_rollers = 12.5: must be a whole number");
-  p = rig_params(), p.n_slices = 1.5;
+  p = rig_params(), p.effects.n_slices = 1.5;
   refused(p, TRB_ERR_INPUT, "n_slices = 1.5: must be a whole number");
-  p = rig_params(), p.lambda_full = 0.005;
+  p = rig_params(), p.friction.lambda_full = 0.005;
   refused(p, TRB_ERR_INPUT, "lambda_full = 0.005");
-  p = rig_params(), p.rib_edge_high = 0.1e-3;
+  p = rig_params(), p.rib.edge_high = 0.1e-3;
   refused(p, TRB_ERR_INPUT, "rib_edge_high");
-  p = rig_params(), p.front_rib_high = 0.3e-3;
+  p = rig_params(), p.rib.front_high = 0.3e-3;
   refused(p, TRB_ERR_INPUT, "front_rib_high");
-  p = rig_params(), p.front_rib_high = 20e-3;
+  p = rig_params(), p.rib.front_high = 20e-3;
   refused(p, TRB_ERR_GEOMETRY, "front_rib_high = 0.02 m: the rib would stand beyond");
-  p.front_rib = 0;
+  p.effects.front_rib = 0;
   CHECK(with(&p) == TRB_OK);
-  p = rig_params(), p.n_rollers = 19;
+  p = rig_params(), p.bearing.n_rollers = 19;
   const double deviation[19] = {0};
   CHECK(create(&p, deviation, 19, NULL, 0) == TRB_ERR_GEOMETRY);
   CHECK_SAYS(message.text, "n_rollers = 19");
-  p = rig_params(), p.profile = 1, p.crown_radius = 1e-3;
+  p = rig_params(), p.roller.profile = 1, p.roller.crown_radius = 1e-3;
   refused(p, TRB_ERR_GEOMETRY, "leave no radius");
 }
 

@@ -45,7 +45,7 @@ static void rates_of(const trb_model *m, const trb_body *body, const trb_drive *
   for (int k = 0; k < s->n; k++) {
     u[k] = y[TRB_CAGE_SIZE + s->n + k] - y[TRB_CAGE_v_z];
     v[k] = -pull(s, y, k) / s->mass;
-    rates[TRB_CAGE_v_z] += pull(s, y, k) / m->params.cage_mass;
+    rates[TRB_CAGE_v_z] += pull(s, y, k) / m->params.cage.mass;
   }
 }
 
@@ -120,7 +120,7 @@ static void test_size(int n)
   for (int i = 0; i < at; i++)
     if (i != rig_cage(rigid) + TRB_CAGE_v_z) CHECK(rates[1][i] == rates[0][i]);
   const int axial = rig_cage(rigid) + TRB_CAGE_v_z;
-  CHECK_NEAR(rates[1][axial] - rates[0][axial], force / p.cage_mass, 1e-9 * fabs(rates[0][axial]) + 1e-9);
+  CHECK_NEAR(rates[1][axial] - rates[0][axial], force / p.cage.mass, 1e-9 * fabs(rates[0][axial]) + 1e-9);
   for (int k = 0; k < trb_n_quadratures(rigid); k++) {
     const double more = rates[1][quadratures[1] + k] - rates[0][quadratures[0] + k];
     if (k == TRB_Q_loss_damping) CHECK_NEAR(more, n * s.damping * 0.01, 1e-12);

@@ -109,9 +109,9 @@ static void test_refused(void)
   settings.max_order = 5.0;
   refused(&p, &settings, "max_order is not 2");
   settings = rig_settings();
-  p.cage_modes = 2.0;
+  p.cage.n_modes = 2.0;
   refused(&p, &settings, "the cage deforms");
-  p = rig_params(), p.ring_free = p.ring_mass = p.ring_inertia_axial = p.ring_inertia_transverse = 1.0;
+  p = rig_params(), p.inner_ring.free = p.inner_ring.mass = p.inner_ring.inertia_axial = p.inner_ring.inertia_transverse = 1.0;
   refused(&p, &settings, "a ring moves freely");
 }
 
@@ -228,7 +228,7 @@ static void test_lead(void)
   double             before[ROOM], y[ROOM];
   int                most = 0;
   make(&b, &p);
-  for (int j = 0; j < p.n_rollers; j += 2) b.start[trb_state_roller(b.system, j) + TRB_ROLLER_v_r] += 0.02;
+  for (int j = 0; j < p.bearing.n_rollers; j += 2) b.start[trb_state_roller(b.system, j) + TRB_ROLLER_v_r] += 0.02;
   if (!CHECK(open_with(&b, &settings, "multirate") == TRB_OK)) return;
   const trb_multirate *s = b.sim->integrator.self;
   for (int i = 0; i < 400; i++) {
@@ -324,7 +324,7 @@ static void test_effort(void)
   for (int i = 0; i < 1500; i++) CHECK(trb_simulation_step(b.sim, &message) == TRB_OK);
   b.sim->integrator.kind->statistics(&b.sim->integrator, &found);
   printf("%g steps, %g of bodies\n", found.steps, found.body_steps);
-  CHECK(found.steps == 1500.0 && found.body_steps < 0.7 * found.steps * (p.n_rollers + 1));
+  CHECK(found.steps == 1500.0 && found.body_steps < 0.7 * found.steps * (p.bearing.n_rollers + 1));
   CHECK(found.last_order == 2.0 && found.smallest_step > 0.0);
   drop(&b);
 }

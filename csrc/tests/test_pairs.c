@@ -27,8 +27,9 @@ static int guidance = TRB_GUIDANCE_INNER_LAND;
 static trb_params params_of_test(void)
 {
   trb_params p = rig_params();
-  p.damping = 1, p.rolling_pressure_force = 1, p.front_rib_clearance = 5e-6, p.oil_fill = 0.3, p.guidance = guidance;
-  p.cage_face_inner = 42.6e-3, p.cage_face_outer = 45.5e-3, p.pocket_film = 20e-6;
+  p.effects.damping = 1, p.effects.rolling_pressure_force = 1, p.rib.front_clearance = 5e-6, p.effects.oil_fill = 0.3,
+  p.effects.guidance = guidance;
+  p.cage.face_inner = 42.6e-3, p.cage.face_outer = 45.5e-3, p.pocket.film = 20e-6;
   return p;
 }
 
@@ -296,9 +297,9 @@ static void test_switches(void)
   for (int k = 0; k < 3; k++) {
     trb_params     on = params_of_test(), off = on;
     const unsigned rows[] = {1U << TRB_PAIR_rib, 1U << TRB_PAIR_front_rib, 1U << TRB_PAIR_pocket};
-    if (k == 0) off.back_rib = 0;
-    if (k == 1) off.front_rib = 0;
-    if (k == 2) off.pocket_bars = off.pocket_ends = 0;
+    if (k == 0) off.effects.back_rib = 0;
+    if (k == 1) off.effects.front_rib = 0;
+    if (k == 2) off.pocket.bars = off.pocket.ends = 0;
     run(&on, 0, motion, y, with);
     run(&off, 0, motion, y, without);
     run(&on, rows[k], motion, y, row);
@@ -314,7 +315,7 @@ static void test_equilibrium(void)
   trb_params       off = rig_params();
   const trb_params on = rig_params();
   double           angles[12], rollers[2][12 * TRB_ROLLER_FREEDOMS] = {{0}}, loads[2][36];
-  off.back_rib = 0;
+  off.effects.back_rib = 0;
   for (int k = 0; k < 2; k++) {
     trb_system      *system = rig_system(k == 0 ? &off : &on);
     const trb_model *m = system->model;
@@ -334,10 +335,10 @@ static void test_guidance(void)
   double      y[MOST], inner[MOST] = {0}, outer[MOST] = {0}, guided[MOST] = {0};
   trb_params  p = params_of_test();
   trb_motion *motion = make_state(y);
-  p.guidance = TRB_GUIDANCE_INNER_LAND;
+  p.effects.guidance = TRB_GUIDANCE_INNER_LAND;
   run(&p, 0, motion, y, guided);
   run(&p, 1U << TRB_PAIR_inner_land, motion, y, inner);
-  p.guidance = TRB_GUIDANCE_OUTER_LAND;
+  p.effects.guidance = TRB_GUIDANCE_OUTER_LAND;
   run(&p, 1U << TRB_PAIR_outer_land, motion, y, outer);
   CHECK(memcmp(inner, outer, sizeof inner) == 0);
   CHECK(memcmp(inner, guided, sizeof inner) != 0);
@@ -349,7 +350,7 @@ static void test_bookings(void)
 {
   int        losses[TRB_N_LOSSES] = {0}, torques[TRB_N_TORQUES] = {0};
   trb_params p = rig_params();
-  p.ring_free = p.ring_mass = p.ring_inertia_axial = p.ring_inertia_transverse = p.cage_modes = 1.0;
+  p.inner_ring.free = p.inner_ring.mass = p.inner_ring.inertia_axial = p.inner_ring.inertia_transverse = p.cage.n_modes = 1.0;
   trb_system *with_losses = rig_system(&p);
   for (int b = 0; b < with_losses->n_bodies; b++)
     if (with_losses->bodies[b].loss > 0) losses[with_losses->bodies[b].loss - 1]++;

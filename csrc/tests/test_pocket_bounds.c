@@ -139,7 +139,7 @@ static void test_lean(void)
   for (int k = 0; k < 3; k++) {
     trb_arms   arms[TRB_N_GAPS];
     trb_params p = rig_params();
-    p.cage_offset = 5e-3 * (k - 1);
+    p.cage.offset = 5e-3 * (k - 1);
     trb_model *m = rig_model(&p);
     trb_pair_pocket.arms(m, NULL, arms);
     for (int g = 0; g < TRB_N_GAPS; g++) {
@@ -163,9 +163,9 @@ int main(void)
   rig_free(system);
   test_lean();
   test_pockets(&p);
-  p.pocket_edges = 0;
+  p.pocket.edges = 0;
   test_pockets(&p);
-  p = rig_params(), p.n_slices = 8, p.cage_offset = 3e-3;
+  p = rig_params(), p.effects.n_slices = 8, p.cage.offset = 3e-3;
   test_pockets(&p);
   p = rig_cylinder();
   test_pockets(&p);

@@ -101,8 +101,8 @@ static void test_common_turn(int guidance)
   trb_params    p = rig_params();
   double        still[ROOM], turning[ROOM], rates[2][ROOM];
   trb_dynamics *d[2];
-  p.guidance = guidance;
-  p.damping = p.rolling_pressure_force = 1;
+  p.effects.guidance = guidance;
+  p.effects.damping = p.effects.rolling_pressure_force = 1;
   trb_system      *system = rig_system(&p);
   const trb_model *m = system->model;
   trb_motion      *motion = rig_motion(rig_state(system, 4930.0, 100 * TRB_PI, still), 100 * TRB_PI);
@@ -111,7 +111,7 @@ static void test_common_turn(int guidance)
   CHECK(trb_system_finish(system, NULL) == TRB_OK);
   rig_disturb(system, &seed, still);
   /* the cage in the land's film, and out of it */
-  still[rig_cage(system) + TRB_CAGE_x] = guidance == TRB_GUIDANCE_INNER_LAND ? 1.001 * p.land_clearance : 0.4 * p.land_clearance;
+  still[rig_cage(system) + TRB_CAGE_x] = guidance == TRB_GUIDANCE_INNER_LAND ? 1.001 * p.land.clearance : 0.4 * p.land.clearance;
   for (int i = 0; i < 2; i++) {
     common = 0.0;
     if (!CHECK(trb_dynamics_create(system, motion, "scalar", &d[i], NULL) == TRB_OK)) return;

@@ -40,7 +40,7 @@ static int add_rib(trb_system *system, const trb_rib *rib)
 static void test_forces(void)
 {
   trb_params p = rig_params();
-  p.lubrication = TRB_LUBRICATION_DRY, p.dry_friction = p.rolling_resistance = p.thermal = 0;
+  p.effects.lubrication = TRB_LUBRICATION_DRY, p.friction.dry_friction = p.effects.rolling_resistance = p.effects.thermal = 0;
   trb_system   *system = rig_system(&p), *both = rig_system(&p);
   const trb_rib rib = rib_at_outer_ring(both->model, 0.5);
   double        y[ROOM];
@@ -113,7 +113,7 @@ static void test_steps(void)
 static void test_equilibrium(void)
 {
   trb_params p = rig_params();
-  p.back_rib = 0;
+  p.effects.back_rib = 0;
   trb_system     *system = rig_system(&p);
   const trb_rib   rib = rib_at_outer_ring(system->model, 1.0);
   double          angles[12], rollers[12 * TRB_ROLLER_FREEDOMS] = {0};

@@ -248,7 +248,7 @@ static double rise_with(double cage_mass)
   trb_params               p = rig_params();
   trb_message              unused;
   double                   y[512], speed, factor;
-  p.cage_mass = cage_mass;
+  p.cage.mass = cage_mass;
   trb_system   *system = rig_system(&p);
   trb_motion   *turning = rig_motion(rig_state(system, 4930.0, 100.0, y), 100.0);
   trb_dynamics *d;

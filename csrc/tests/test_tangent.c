@@ -113,7 +113,7 @@ static void test_origin(const trb_params *params)
 /* Slopes of chosen rollers are those that all have, and leave the others' alone. */
 static void test_chosen(const trb_params *params)
 {
-  const int   chosen[2] = {3, 7}, n = (int)params->n_rollers;
+  const int   chosen[2] = {3, 7}, n = (int)params->bearing.n_rollers;
   trb_tangent before[12], alone[12];
   bench       b;
   double      y[MOST];
@@ -282,7 +282,7 @@ static void test_bounds(const trb_params *params, double of_rolling, double spee
   bench  b;
   double y[MOST], found[MOST];
   if (!open_bench(&b, params, 1.0, 1.0)) return;
-  const double    rolling = fabs(0.5 * params->roller_diameter * b.model->geometry.roller_spin_ratio * 100.0 * TRB_PI);
+  const double    rolling = fabs(0.5 * params->roller.diameter * b.model->geometry.roller_spin_ratio * 100.0 * TRB_PI);
   const double    slip = 1e-3 * fmin(of_rolling * rolling, speed_of_range);
   const trb_cone *face = &((const trb_rib *)b.system->pairs[TRB_PAIR_rib].own)->face;
   for (int k = 0; k < 5; k++) {
@@ -322,14 +322,14 @@ static void test_range_of_friction(void)
 {
   trb_params p = rig_params();
   test_bounds(&p, 1.0, INFINITY);
-  p.lubrication = TRB_LUBRICATION_DRY;
-  test_bounds(&p, 1.0, 181.46 * p.coulomb_speed);
-  p.dry_friction = 0.0;
+  p.effects.lubrication = TRB_LUBRICATION_DRY;
+  test_bounds(&p, 1.0, 181.46 * p.friction.coulomb_speed);
+  p.friction.dry_friction = 0.0;
   test_bounds(&p, 1.0, INFINITY);
-  p = rig_params(), p.boundary_decay = 5.0 * 181.46;
+  p = rig_params(), p.friction.boundary_decay = 5.0 * 181.46;
   test_bounds(&p, 0.2, INFINITY);
-  p = rig_params(), p.traction = TRB_TRACTION_COULOMB;
-  test_bounds(&p, 1.0, 181.46 * p.coulomb_speed);
+  p = rig_params(), p.effects.traction = TRB_TRACTION_COULOMB;
+  test_bounds(&p, 1.0, 181.46 * p.friction.coulomb_speed);
 }
 
 /* Between two knots of the motion everything is exact, to the bit; after them new tangents are made. */
@@ -413,10 +413,10 @@ int main(void)
   test_under_way(&p);
   test_seldom(&p);
   test_not_finite(&p);
-  p.damping = 1, p.rolling_pressure_force = 1;
+  p.effects.damping = 1, p.effects.rolling_pressure_force = 1;
   test_origin(&p);
   test_order(&p);
-  p = rig_params(), p.planar = 1;
+  p = rig_params(), p.effects.planar = 1;
   test_origin(&p);
   for (int sign = 1; sign >= -1; sign -= 2) {
     p = rig_params(), speed = sign * 100.0 * TRB_PI;
