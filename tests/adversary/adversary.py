@@ -2,6 +2,7 @@
 
 python tests/adversary/adversary.py --count 1000             a number of scenes
 python tests/adversary/adversary.py --minutes 20             for a time
+python tests/adversary/adversary.py --count 12 --check       the check of each run is asked, too
 """
 
 from __future__ import annotations
@@ -24,11 +25,11 @@ FOUND = Path(__file__).with_name("found")
 BAD = ("wrong", "hanging", "crashed")
 
 
-def one(job: tuple[str, int]) -> dict[str, Any]:
-    kind, seed = job
+def one(job: tuple[str, int, bool]) -> dict[str, Any]:
+    kind, seed, checked = job
     began = clock.process_time()
     try:
-        verdict = judge(draw(kind, seed)).to_dict()
+        verdict = judge(draw(kind, seed), checked=checked).to_dict()
     except Exception as error:  # whatever it is: it is a finding
         verdict = Verdict(draw(kind, seed), "crashed", [f"{type(error).__name__}: {error}"]).to_dict()
     return verdict | {"kind": kind, "seed": seed, "cpu_s": clock.process_time() - began}
@@ -56,12 +57,12 @@ def judge_quietly(table: Table) -> str:
         return "crashed"
 
 
-def jobs(args: argparse.Namespace) -> Iterator[tuple[str, int]]:
+def jobs(args: argparse.Namespace) -> Iterator[tuple[str, int, bool]]:
     kinds = sorted(KINDS) if args.kind == "all" else [args.kind]
     seed = args.seed
     while args.count is None or seed < args.seed + args.count:
         for kind in kinds:
-            yield kind, seed
+            yield kind, seed, args.check
         seed += 1
 
 
@@ -72,6 +73,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0, help="first seed")
     parser.add_argument("--kind", choices=["all", *KINDS], default="all")
     parser.add_argument("--jobs", type=int, default=2, help="processes")
+    parser.add_argument("--check", action="store_true", help="ask the check of each run, too")
     parser.add_argument("--json", type=Path, help="every verdict")
     parser.add_argument("--keep", action="store_true", help="shrink failures and keep them in tests/adversary/found")
     args = parser.parse_args()
@@ -125,7 +127,7 @@ def say(verdict: dict[str, Any]) -> None:
 
 def report(verdicts: list[dict[str, Any]], seconds: float) -> None:
     counts = Counter((v["kind"], v["status"]) for v in verdicts)
-    statuses = ["right", "warned", "chance", "unjudged", "stopped", "refused", "wrong", "hanging", "crashed"]
+    statuses = ["right", "warned", "told", "chance", "unjudged", "stopped", "refused", "wrong", "hanging", "crashed"]
     print(f"\n{len(verdicts)} scenes in {seconds / 60:.1f} min")
     print("kind      " + "".join(f"{s:>10}" for s in statuses))
     for kind in sorted({v["kind"] for v in verdicts}):
@@ -133,6 +135,13 @@ def report(verdicts: list[dict[str, Any]], seconds: float) -> None:
     right = [v for v in verdicts if v["status"] == "right" and v["run"]["warnings"]]
     vibrating = sum(any("vibrate" in text for text in v["run"]["warnings"]) for v in right)
     print(f"of the right ones {len(right)} were warned, {vibrating} of vibrations")
+    asked = [v for v in verdicts if v["status"] == "right" and "answer" in v["check"]]
+    if asked:
+        answers = Counter(v["check"]["answer"] for v in asked)
+        print(
+            f"of the right ones {len(asked)} were checked: " + ", ".join(f"{n} {name}" for name, n in answers.items())
+        )
+        print(f"a check took at most {max(v['check']['spent_s'] for v in asked):.1f} s of processor time")
     bad = sum(v["status"] in BAD for v in verdicts)
     begun = sum(v["status"] != "refused" for v in verdicts)
     print(f"wrong, hanging or crashed: {bad} of {begun} runs, {1000 * bad / max(begun, 1):.3g} per thousand")

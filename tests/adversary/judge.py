@@ -6,6 +6,10 @@ ended it and said why, and *refused* if no run was begun. It is *chance* if its 
 summary states, and runs of the same scene from states that are moved a little are right in the mean (`chance`). It is *wrong*
 if none of this holds, and *hanging* if its steps became so small that it would not end. It is *unjudged* where the tight run did
 not come to its end, so that only its energy is known to be right.
+
+With `checked` the check of the run (`trbdyn.check`) is asked for its loss, too, as a user may do: a run whose loss is off is
+*told* by it if it calls the loss biased or unsettled, or states an error that holds the true one; what it says of right runs is
+kept with the verdict.
 """
 
 from __future__ import annotations
@@ -93,13 +97,53 @@ class Verdict:
     broken: list[str] = field(default_factory=list)
     run: Run | None = None
     tight: Run | None = None
+    check: dict[str, Any] = field(default_factory=dict)
+    """What the check of the run says of its loss; empty if it was not asked, or has nothing to say."""
 
     def to_dict(self) -> dict[str, Any]:
         return asdict(self)
 
 
-def judge(table: Table) -> Verdict:
-    return _judge_pair(table) if "arrangement" in table else _judge_scene(table)
+CHECKED = ("right", "warned", "chance", "wrong")
+
+
+def judge(table: Table, *, checked: bool = False) -> Verdict:
+    verdict = _judge_pair(table) if "arrangement" in table else _judge_scene(table)
+    if checked and verdict.status in CHECKED:
+        _ask_check(table, verdict)
+    return verdict
+
+
+def _ask_check(table: Table, verdict: Verdict) -> None:
+    """Run the same time again as a user does, and ask how accurate its loss is."""
+    assert verdict.run is not None
+    pair = "arrangement" in table
+    subject = pairs.make(table) if pair else make(table)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        sim = trb.Simulation(subject, accuracy=((pairs.ORDINARY if pair else ORDINARY) | table)["accuracy"])
+        try:
+            found = trb.check(sim.run(duration=verdict.run.time, save_every=verdict.run.time / 100))
+        except trb.TrbError as error:
+            verdict.check = {"note": str(error).splitlines()[0][:200]}
+            return
+    losses = {name: one for name, one in found.numbers.items() if name.endswith("power_loss")}
+    verdict.check = {"spent_s": found.spent_s, "pairs": found.pairs, "covered": found.covered, "note": found.note}
+    if not losses:
+        return
+    answers = {one.answer for one in losses.values()}
+    verdict.check["answer"] = next(answer for answer in ("biased", "unsettled", "clear") if answer in answers)
+    verdict.check["error"] = max(one.error for one in losses.values())
+    if verdict.status == "wrong" and all(text.startswith(("loss off", "moved runs")) for text in verdict.broken):
+        off = _off(verdict)
+        if verdict.check["answer"] != "clear" or (off is not None and off <= verdict.check["error"]):
+            verdict.status = "told"
+
+
+def _off(verdict: Verdict) -> float | None:
+    """Difference of the loss from that of the tight run, over it."""
+    run, tight = verdict.run, verdict.tight
+    return None if run is None or tight is None or not tight.asked[0] else abs(run.loss / tight.asked[0] - 1.0)
 
 
 def _judge_pair(table: Table) -> Verdict:
