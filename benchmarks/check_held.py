@@ -42,6 +42,10 @@ COLUMNS: Final = {
     "answer": "text: what the check says of it",
     "stated": "1: error that the check states, over the number",
     "true": "1: true error, over the number",
+    "bias": "1: bias that the check found, over the number",
+    "half_width": "1: half of its interval",
+    "scatter": "1: standard deviation of repetitions, over the number",
+    "degrees": "1: degrees of freedom that the scatter is known by",
     "held": "1: whether the stated error holds the true one",
     "run_s": "s: processor time of the run",
     "check_s": "s: processor time of the check",
@@ -80,6 +84,7 @@ def held(row: dict[str, Any], scene: trb.Scene, turns: float) -> list[dict[str, 
             judged.append(
                 row
                 | {"number": name, "answer": one.answer, "stated": one.error, "true": off, "held": off <= one.error}
+                | {"bias": one.bias, "half_width": one.half_width, "scatter": one.scatter, "degrees": one.degrees}
                 | {"run_s": spent, "check_s": found.spent_s}
             )
     return judged

@@ -31,6 +31,9 @@ from trbdyn.run.repeat import DEARER, Piece, Repeating, Sample, pieces
 
 CLEAR: Final = 0.03
 """Share of a number within which it must be known to be right."""
+YARDSTICK: Final = 1e-3
+"""Share of a number within which repetitions with tighter tolerances are right themselves: `benchmarks/check_held.py` compares those
+of 'reference' with a tenth of them. No check can tell less."""
 MOST_PAIRS: Final = 6
 """Pairs of repetitions of a whole run at most."""
 BUDGET_S: Final = 2.0
@@ -56,6 +59,8 @@ class Checked:
         Half of the 95 % confidence interval of the bias, over the value.
     scatter : float
         Standard deviation over repetitions that are as good, over the value.
+    degrees : int
+        Degrees of freedom that the scatter is known by.
     answer : {'clear', 'biased', 'unsettled'}
         Known to be right within `CLEAR`; known to be wrong by more than the interval of its bias, and not known to be within
         `CLEAR`; or not known.
@@ -65,11 +70,15 @@ class Checked:
     half_width: float
     scatter: float
     answer: str
+    degrees: int
 
     @property
     def error(self) -> float:
-        """Error over the value that the number may have in this run: of bias, its interval and the scatter."""
-        return abs(self.bias) + self.half_width + 2.0 * self.scatter
+        """Error over the value that the number may have in this run: of bias, its interval, the scatter, of which 95 of 100 runs
+        keep within Student's t, and the repetitions with tighter tolerances themselves.
+        """
+        scatter = float(stdtrit(self.degrees, 0.975)) * self.scatter if self.degrees else math.inf
+        return abs(self.bias) + self.half_width + scatter + YARDSTICK
 
     def __str__(self) -> str:
         low, high = (100.0 * (self.bias + sign * self.half_width) for sign in (-1.0, 1.0))
@@ -276,7 +285,7 @@ def judged(name: str, samples: Sequence[Sample]) -> Checked:
     sizes = [[abs(run[name]) for one in samples for run in runs(one)] for runs in (lambda s: s.own, lambda s: s.tight)]
     scale = max(float(np.mean(size)) for size in sizes)
     if scale == 0.0:
-        return Checked(0.0, 0.0, 0.0, "clear")
+        return Checked(0.0, 0.0, 0.0, "clear", len(samples))
     squares, degrees = 0.0, 0
     for one in samples:
         for runs in (one.own, one.tight):
@@ -292,8 +301,8 @@ def judged(name: str, samples: Sequence[Sample]) -> Checked:
     known = degrees if off.size == 1 else off.size - 1
     bias, half = float(off.mean()), float(stdtrit(known, 0.975)) * math.sqrt(error) if known else math.inf
     if abs(bias) + half < CLEAR:
-        return Checked(bias, half, scatter, "clear")
-    return Checked(bias, half, scatter, "biased" if abs(bias) > max(half, CLEAR) else "unsettled")
+        return Checked(bias, half, scatter, "clear", degrees)
+    return Checked(bias, half, scatter, "biased" if abs(bias) > max(half, CLEAR) else "unsettled", degrees)
 
 
 def _mean(runs: Sequence[Mapping[str, float]], name: str) -> float:
