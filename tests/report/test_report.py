@@ -176,7 +176,9 @@ def test_films_have_one_limit_in_sentences_and_pictures(result: trb.Result) -> N
 
 def test_what_the_check_of_the_run_found_stands_beside_each_number(result: trb.Result, tmp_path: Path) -> None:
     checked = [
-        Check({"torque": Checked(-0.2, 0.01, 0.001, "biased", 4)}, 1, 1.0, 0.1, "How it was done.", {"torque": "torque"})
+        Check(
+            {"torque": Checked(-0.2, 0.01, 0.001, "biased", 4)}, 1, 1.0, 0.1, "How it was done.", {"torque": "torque"}
+        )
     ]
     text = page([result], ["first"], "", ["cage_locus"], (), checked)
     assert "By the check of the run: 19 to 21 % too low by the tolerances of the run." in text

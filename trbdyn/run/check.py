@@ -32,8 +32,8 @@ from trbdyn.run.repeat import DEARER, Piece, Repeating, Sample, pieces
 CLEAR: Final = 0.03
 """Share of a number within which it must be known to be right."""
 YARDSTICK: Final = 1e-3
-"""Share of a number within which repetitions with tighter tolerances are right themselves: `benchmarks/check_held.py` compares those
-of 'reference' with a tenth of them. No check can tell less."""
+"""Share of a number within which repetitions with tighter tolerances are right themselves (`benchmarks/check_held.py` compares
+those of 'reference' with a tenth of them). No check can tell less."""
 MOST_PAIRS: Final = 6
 """Pairs of repetitions of a whole run at most."""
 BUDGET_S: Final = 2.0
