@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -37,6 +38,17 @@ def test_scatter_that_changes_the_answer_is_said() -> None:
         "with rollers with a scatter of 1 um (seed 1) the cage whirls (0.94 Cpr); with equal rollers, which nobody has, it "
         "cannot be told",
     )
+
+
+def test_words_of_starts_that_agree() -> None:
+    assert row(0.0, "agreed", 0.7, "circling").words == "all starts agree: it whirls, orbit 0.70 Cpr within 0.02"
+    comes = row(0.0, "agreed", 0.1, "stable", rate=-0.02, rate_error=0.001).words
+    assert comes == (
+        "two of three starts agree: it does not whirl, orbit 0.10 Cpr within 0.02; the orbit of the last one still shrinks by "
+        "0.02 Cpr in a second towards it"
+    )
+    alike = replace(row(0.0, "alike", 0.7, "circling", ends=(0.8, 0.6)), kinds=("circling", "circling"))
+    assert alike.words == "it whirls from all starts; their orbits differ or wander: 0.60 to 0.80 Cpr"
 
 
 @pytest.mark.slow

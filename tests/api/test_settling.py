@@ -363,6 +363,36 @@ def test_starts_that_move_towards_each_other_or_apart() -> None:
     assert beyond.verdict == "unknown"  # the smaller one grows beyond where the other comes from
 
 
+def test_two_of_three_starts_agree_and_the_third_comes() -> None:
+    """It needs no longer runs of the others; one that slows down before it gets there is another matter."""
+    still, down = whirling(lambda t: 0.1 + 0 * t), whirling(lambda t: 0.72 - 0.04 * t)
+    comes = whirling(lambda t: 0.1 + 0.2 * np.exp(-1.5 * t), 100)
+    found = obs.compare_starts((still, down), comes, window=20, kinds=["stable", "circling", "stable"])
+    assert (found.verdict, round(found.orbit, 2)) == ("agreed", 0.10)
+    assert found.rate == pytest.approx(-0.04, rel=0.1)
+    ends = whirling(lambda t: 0.45 + 0.2 * np.exp(-0.6 * t))
+    assert obs.compare_starts((still, ends), comes, window=20).verdict != "agreed"
+    far = whirling(lambda t: 0.9 - 0.04 * t)
+    assert obs.compare_starts((still, far), comes, window=20).verdict == "dies"
+    slowly = whirling(lambda t: 0.3 - 0.02 * t)
+    goes = obs.compare_starts((still, down), slowly, window=20)
+    assert (goes.verdict, goes.open) == ("dies", (2,))
+
+
+def test_starts_of_one_class_whose_orbits_differ_are_alike() -> None:
+    one, other = whirling(lambda t: 0.66 + 0 * t), whirling(lambda t: 0.81 + 0 * t)
+    both = ["circling", "circling"]
+    found = obs.compare_starts((one, other), window=20, creep_turns=30.0, kinds=both)
+    assert (found.verdict, round(found.orbit, 2)) == ("alike", 0.73)
+    assert found.error > 0.07
+    assert obs.compare_starts((one, other), window=20, creep_turns=90.0, kinds=both).verdict == "unknown"
+    assert (
+        obs.compare_starts((one, other), window=20, creep_turns=30.0, kinds=["circling", "rocking"]).verdict != "alike"
+    )
+    far = whirling(lambda t: 0.95 + 0 * t)
+    assert obs.compare_starts((one, far), window=20, creep_turns=30.0, kinds=both).verdict == "unknown"
+
+
 def test_starts_that_scatter_agree_over_a_longer_part() -> None:
     """Scatter of 0.08 Cpr: a window of 20 turns tells no mean, half of 240 mostly does, and then holds it."""
     t, agreed = np.arange(240) * 0.05, 0

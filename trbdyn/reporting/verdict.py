@@ -218,7 +218,7 @@ def _needed(numbers: dict[str, Any]) -> str:
     of_turns = words(lambda t: _two(turns * t))
     return (
         f"A run of {least}{words(_two)} s ({of_turns} turns of the {_ring(numbers)}{cost}) is expected to tell; "
-        "trb.cage_answer compares several starts, which often tells sooner. "
+        "trb.cage_answer compares several starts, which often tells sooner, and rollers as they are made. "
     )
 
 

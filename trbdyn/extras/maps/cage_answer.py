@@ -37,11 +37,17 @@ from trbdyn.statics.creep import creep_time
 Array = NDArray[np.float64]
 
 WINDOW: Final = 20
-"""Turns of the cage in a window."""
+"""Turns of the cage in a window; half as many where half of the first window of the outer runs costs more than `COSTLY`."""
+COSTLY: Final = 0.125
+"""Share of the processor time."""
 RECORDS_A_TURN: Final = 32
 GROUPS: Final = ("cage", "rollers", "peaks", "pocket")
+FIRST_GROUPS: Final = ("cage", "rollers")
+"""The same of the first window, which is a transient of which no hits are told."""
 REST, BETWEEN, LARGE = "rest", "whirl 0.3", "whirl 0.9"
 STARTS: Final = {REST: Start.equal(), BETWEEN: Start.whirl(0.3), LARGE: Start.whirl(0.9)}
+ORDER: Final = (REST, LARGE, BETWEEN)
+"""Starts in the order in which they are compared."""
 BEFORE_THIRD: Final = 3
 """Windows of the outer starts before the one between is run, where they do not agree; 1 where the rollers creep within more turns
 than these windows have, so that a direction is the most that can be told soon.
@@ -54,6 +60,8 @@ SCATTER: Final = (0.0, 0.2e-6, 1e-6)
 """Ranges of the rollers' diameters that are tried unless told otherwise (m): none; those of the finest rollers; those of ordinary
 ones (ISO 12297, variation within a lot: 0.5 um of grade 0.5, 1 um of grade 1).
 """
+TOLD: Final = ("agreed", "alike", "grows", "dies")
+"""Verdicts that tell one motion."""
 WHIRLS: Final = {
     "circling": "whirls",
     "rocking": "hangs and rocks",
@@ -75,10 +83,10 @@ class OfRollers:
     seed : int
         Seed of the diameters.
     found : Compared
-        What the starts tell: agreed, grows, dies, meets, two motions, start decides or unknown.
+        What the starts tell: agreed, alike, grows, dies, meets, two motions, start decides or unknown.
     kind : str
-        Class of the motion, as `observables.classify` names it: of all starts where they agree, of the one towards which it moves
-        where it grows or dies; else 'unknown'.
+        Class of the motion, as `observables.classify` names it: of all starts where they agree or are alike, of the one towards
+        which it moves where it grows or dies; else 'unknown'.
     hits : float
         Hits of rollers on the cage in a second (1/s), of that start; nan for an unknown motion.
     force : float
@@ -107,9 +115,15 @@ class OfRollers:
         """The verdict in words."""
         found, does = self.found, WHIRLS.get(self.kind, "")
         if found.verdict == "agreed":
-            return f"all starts agree: it {does}, orbit {found.orbit:.2f} Cpr within {found.error:.2f}"
+            of, moving = f"it {does}, orbit {found.orbit:.2f} Cpr within {found.error:.2f}", math.isfinite(found.rate)
+            last = f"; the orbit of the last one still {_way(found.rate)} towards it" if moving else ""
+            return f"{'two of three starts' if moving else 'all starts'} agree: {of}{last}"
+        if found.verdict == "alike":
+            low, high = sorted(found.ends)
+            does = " or ".join(dict.fromkeys(WHIRLS.get(kind, "moves") for kind in self.kinds))
+            return f"it {does} from all starts; their orbits differ or wander: {low:.2f} to {high:.2f} Cpr"
         if found.verdict in ("grows", "dies"):
-            way = f"the orbit {'grows' if found.verdict == 'grows' else 'shrinks'} by {abs(found.rate):.2g} Cpr in a second"
+            way = f"the orbit {_way(found.rate)}"
             when = f"expected there after {found.time_low:.2g} to {found.time_high:.2g} s more"
             return f"{way} towards {found.orbit:.2f} Cpr, where it {does}; {when}"
         if found.verdict == "meets":
@@ -123,6 +137,11 @@ class OfRollers:
             long = f" for {found.time_low:.2g} s or longer" if found.verdict == "start decides" else ""
             return f"two motions are possible, the start decides{long}: {both}"
         return f"cannot be told: {found.reason}"
+
+
+def _way(rate: float) -> str:
+    """A rate of an orbit in words."""
+    return f"{'grows' if rate > 0.0 else 'shrinks'} by {abs(rate):.2g} Cpr in a second"
 
 
 @dataclass(frozen=True, repr=False)
@@ -183,12 +202,11 @@ class CageAnswer(Tabled):
 
 def _changes(ideal: OfRollers, real: OfRollers) -> str:
     """How scatter of the rollers changes the answer, in a sentence; empty where it does not."""
-    told = {"agreed", "grows", "dies"}
-    if real.found.verdict not in told:
+    if real.found.verdict not in TOLD:
         return ""
     of = f"rollers with a scatter of {1e6 * real.scatter:g} um (seed {real.seed})"
     here = f"the cage {WHIRLS.get(real.kind, 'moves')} ({real.found.orbit:.2f} Cpr)"
-    if ideal.found.verdict not in told:
+    if ideal.found.verdict not in TOLD:
         return f"with {of} {here}; with equal rollers, which nobody has, it cannot be told"
     if ideal.kind != real.kind or abs(ideal.found.orbit - real.found.orbit) > 2.0 * observables.LIMITS["orbit radius"]:
         was = f"{WHIRLS.get(ideal.kind, 'moves')} ({ideal.found.orbit:.2f} Cpr)"
@@ -298,25 +316,30 @@ class _Run:
     """A run from one start: what was found so far, by bearing."""
 
     simulation: Any
-    length: float
-    save_every: float
+    turn: float
+    """Time of a turn of the cage (s)."""
     spent: float = 0.0
     turns: int = 0
     times: dict[str, list[Array]] = field(default_factory=dict)
     orbits: dict[str, list[Array]] = field(default_factory=dict)
     last: dict[str, Result] = field(default_factory=dict)
 
-    def go_on(self) -> None:
-        """One window more."""
+    def go_on(self, turns: int, groups: Sequence[str]) -> float:
+        """Run on for some turns of the cage; the processor time (s)."""
         began = clock.thread_time()
-        result = self.simulation.run(duration=self.length, save_every=self.save_every, save_groups=GROUPS)
+        # a little more than whole turns, as a cage that slips has not quite turned by them
+        result = self.simulation.run(
+            duration=(turns + 0.2) * self.turn, save_every=self.turn / RECORDS_A_TURN, save_groups=groups
+        )
         parts = {"": result} if isinstance(result, Result) else {name: result[name] for name in result.names}
         for name, part in parts.items():
             when, means = part.turn_means()
             self.times.setdefault(name, []).append(when)
             self.orbits.setdefault(name, []).append(means[observables.COMPARED])
-        self.last, self.turns = parts, self.turns + WINDOW
-        self.spent += clock.thread_time() - began
+        self.last, self.turns = parts, self.turns + turns
+        took = clock.thread_time() - began
+        self.spent += took
+        return took
 
     def series(self, name: str) -> tuple[Array, Array]:
         """Times and orbit radius by turns of the cage."""
@@ -333,41 +356,54 @@ class _Search:
     seed: int
     creep: dict[str, float]
     workers: int
+    window: int = WINDOW
+    """Turns of the cage in a window."""
 
     def rows(self, most: float) -> list[OfRollers]:
         """The answer of each bearing within a processor time (s)."""
         runs = {name: self._begun(name) for name in (REST, LARGE)}
-        slowly = any(turns > BEFORE_THIRD * WINDOW for turns in self.creep.values())
         with ThreadPoolExecutor(self.workers) as pool:
-            windows, spent = 0, 0.0
+
+            def go_on(names: Sequence[str], turns: int, groups: Sequence[str] = GROUPS) -> float:
+                """Run on; largest processor time of a run (s)."""
+                return max(pool.map(lambda name: runs[name].go_on(turns, groups), names))
+
+            each, windows, going = go_on(list(runs), WINDOW // 2, FIRST_GROUPS), 1, list(runs)
+            self.window = WINDOW // 2
+            if len(runs) * each <= COSTLY * most:
+                each += go_on(going, WINDOW // 2, FIRST_GROUPS)
+                self.window = WINDOW
+            slowly = any(turns > BEFORE_THIRD * self.window for turns in self.creep.values())
             while True:
-                list(pool.map(_Run.go_on, runs.values()))
-                windows += 1
                 found = {name: self._compared(name, runs) for name in self.subject.names}
-                before, spent = spent, sum(one.spent for one in runs.values())
-                done = all(one.verdict == "agreed" for one in found.values())
-                third = BETWEEN not in runs and not done and windows >= (1 if slowly else BEFORE_THIRD)
-                cost = (spent - before) / len(runs) * (len(runs) + third)  # of the next windows (s)
-                left = (most - spent) / cost * self._length  # bearing time that can still be run
+                spent = sum(one.spent for one in runs.values())
+                told = all(one.verdict in ("agreed", "alike") for one in found.values())
+                open_ones = set().union(*(one.open for one in found.values()))
+                going = [name for k, name in enumerate(ORDER) if k in open_ones and name in runs]
+                if third := BETWEEN not in runs and not told and windows >= (1 if slowly else BEFORE_THIRD):
+                    going = list(ORDER)
+                left = (most - spent) / (each * len(going)) * self._length  # bearing time that can still be run
                 if windows > 1 and (
                     left < self._length or all(self._is_done(one, windows, left) for one in found.values())
                 ):
                     break
                 if third:
                     runs[BETWEEN] = self._begun(BETWEEN)
+                each, windows = go_on(going, self.window), windows + 1
         return [self._row(name, found[name], runs, spent) for name in self.subject.names]
 
     @property
     def _length(self) -> float:
         """Bearing time of a window (s)."""
-        return WINDOW * 2.0 * math.pi / abs(self.subject.orbit_speed(self.subject.part.start.time))
+        return self.window * 2.0 * math.pi / abs(self.subject.orbit_speed(self.subject.part.start.time))
 
-    @staticmethod
-    def _is_done(found: observables.Compared, windows: int, left: float) -> bool:
+    def _is_done(self, found: observables.Compared, windows: int, left: float) -> bool:
         """Whether longer runs of a bearing are of no use, with a bearing time (s) that can still be run."""
         if found.verdict == "agreed":
             return True
-        told = found.verdict in ("two motions", "start decides") or found.time_low > left
+        if found.verdict == "start decides":
+            left = min(left, windows * self._length)
+        told = found.verdict in ("alike", "two motions") or found.time_low > left
         return windows >= ENOUGH and told
 
     def _begun(self, start: str) -> _Run:
@@ -376,20 +412,19 @@ class _Search:
             subject = subject.with_part(prefix, start=STARTS[start].replace(time=part.start.time))
         turn = 2.0 * math.pi / abs(subject.orbit_speed(subject.part.start.time))
         own = self.options.replace(revolutions=None, duration=WINDOW * turn)
-        # a little more than whole turns, as a cage that slips has not quite turned by them
-        return _Run(Simulation(subject, **own.of_simulation()), (WINDOW + 0.2) * turn, turn / RECORDS_A_TURN)
+        return _Run(Simulation(subject, **own.of_simulation()), turn)
 
     def _compared(self, name: str, runs: dict[str, _Run]) -> observables.Compared:
-        kinds = {runs[start].last[name].cage_motion.kind for start in (REST, LARGE)}
+        kinds = [runs[start].last[name].cage_motion.kind for start in ORDER if start in runs and runs[start].turns]
         between = runs[BETWEEN].series(name) if BETWEEN in runs and runs[BETWEEN].turns else None
         outer = runs[REST].series(name), runs[LARGE].series(name)
-        return observables.compare_starts(outer, between, window=WINDOW, creep_turns=self.creep[name], kinds=kinds)
+        return observables.compare_starts(outer, between, window=self.window, creep_turns=self.creep[name], kinds=kinds)
 
     def _row(self, name: str, found: observables.Compared, runs: dict[str, _Run], spent: float) -> OfRollers:
-        ends = {start: float(runs[start].series(name)[1][-WINDOW:].mean()) for start in (REST, LARGE)}
+        ends = {start: float(runs[start].series(name)[1][-self.window :].mean()) for start in (REST, LARGE)}
         like = min(ends, key=lambda start: abs(ends[start] - found.orbit))
         last = runs[like].last[name]
-        told = found.verdict in ("agreed", "grows", "dies")
+        told = found.verdict in TOLD
         hits = float(last.rattle.per_second) if told else math.nan
         force = float(np.max(last.peaks["pocket_force_peak"])) if told else math.nan
         kind = last.cage_motion.kind if told else "unknown"
