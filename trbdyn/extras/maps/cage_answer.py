@@ -373,7 +373,7 @@ class _Search:
             if len(runs) * each <= COSTLY * most:
                 each += go_on(going, WINDOW // 2, FIRST_GROUPS)
                 self.window = WINDOW
-            slowly = any(turns > BEFORE_THIRD * self.window for turns in self.creep.values())
+            turns, slowly = self.window, any(one > BEFORE_THIRD * self.window for one in self.creep.values())
             while True:
                 found = {name: self._compared(name, runs) for name in self.subject.names}
                 spent = sum(one.spent for one in runs.values())
@@ -382,37 +382,36 @@ class _Search:
                 going = [name for k, name in enumerate(ORDER) if k in open_ones and name in runs]
                 if third := BETWEEN not in runs and not told and windows >= (1 if slowly else BEFORE_THIRD):
                     going = list(ORDER)
-                left = (most - spent) / (each * len(going)) * self._length  # bearing time that can still be run
-                if windows > 1 and (
-                    left < self._length or all(self._is_done(one, windows, left) for one in found.values())
-                ):
+                left = (most - spent) / (each * len(going)) * turns  # turns that can still be run
+                done = all(self._is_done(one, windows, left) for one in found.values())
+                if windows > 1 and (done or left < self.window // 2):
                     break
                 if third:
                     runs[BETWEEN] = self._begun(BETWEEN)
-                each, windows = go_on(going, self.window), windows + 1
+                turns = max(min(self.window, int(left)), self.window // 2)
+                each, windows = go_on(going, turns), windows + 1
         return [self._row(name, found[name], runs, spent) for name in self.subject.names]
 
     @property
-    def _length(self) -> float:
-        """Bearing time of a window (s)."""
-        return self.window * 2.0 * math.pi / abs(self.subject.orbit_speed(self.subject.part.start.time))
+    def _turn(self) -> float:
+        """Bearing time of a turn of the cage (s)."""
+        return 2.0 * math.pi / abs(self.subject.orbit_speed(self.subject.part.start.time))
 
     def _is_done(self, found: observables.Compared, windows: int, left: float) -> bool:
-        """Whether longer runs of a bearing are of no use, with a bearing time (s) that can still be run."""
+        """Whether longer runs of a bearing are of no use, with turns of the cage that can still be run."""
         if found.verdict == "agreed":
             return True
         if found.verdict == "start decides":
-            left = min(left, windows * self._length)
-        told = found.verdict in ("alike", "two motions") or found.time_low > left
+            left = min(left, windows * self.window)
+        told = found.verdict in ("alike", "two motions") or found.time_low > left * self._turn
         return windows >= ENOUGH and told
 
     def _begun(self, start: str) -> _Run:
         subject = self.subject
         for prefix, part in subject.parts.items():
             subject = subject.with_part(prefix, start=STARTS[start].replace(time=part.start.time))
-        turn = 2.0 * math.pi / abs(subject.orbit_speed(subject.part.start.time))
-        own = self.options.replace(revolutions=None, duration=WINDOW * turn)
-        return _Run(Simulation(subject, **own.of_simulation()), turn)
+        own = self.options.replace(revolutions=None, duration=WINDOW * self._turn)
+        return _Run(Simulation(subject, **own.of_simulation()), self._turn)
 
     def _compared(self, name: str, runs: dict[str, _Run]) -> observables.Compared:
         kinds = [runs[start].last[name].cage_motion.kind for start in ORDER if start in runs and runs[start].turns]
