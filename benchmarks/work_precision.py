@@ -6,10 +6,10 @@
     python benchmarks/work_precision.py --make-table [FILE]    writes trbdyn/data/accuracy.json for Simulation.estimate()
 
 Errors are deviations from a reference within windows of at least 4 ms and 10 impacts (40 ms at 100 rpm, 1.5 ms at 10 000 rpm)
-from stored states, in most scenes of a cage in the middle of a collision (see `accuracy.states`). Beyond those, colliding
-motion is chaotic and means are compared: the bias of a preset is the mean difference of batches from those of a tight run from
-the same states, with its 95 % confidence interval. The reference is an explicit Runge-Kutta method at 1e-4 of the base
-tolerances, checked against BDF at the same, or BDF checked against the explicit method where explicit steps are far too short.
+from stored states, in most scenes of a cage in the middle of a collision (see `accuracy.states`). What tolerances do to means
+and peaks of longer runs, which are chaotic, is measured at the run itself (`trb.check`). The reference is an explicit
+Runge-Kutta method at 1e-4 of the base tolerances, checked against BDF at the same, or BDF checked against the explicit method
+where explicit steps are far too short.
 Tolerances are given as a scale of the base: rtol 1e-3, 3e-10 m, 3e-8 rad, 1e-4 m/s, 1e-2 rad/s.
 """
 
@@ -26,25 +26,13 @@ from typing import Any
 import common
 from accuracy import measure, states, user
 from accuracy.picture import draw_front
-from accuracy.tables import BIASES, text_of
+from accuracy.tables import text_of
 
 from trbdyn import Simulation
 from trbdyn.run.options import ACCURACY
 
-OBSERVED = {
-    "pocket_mean": "N: mean force of all pockets together, impulse a second",
-    "pocket_p95": "N: 95th percentile of the forces on touched faces of pockets",
-    "duty": "1: share of time and rollers in which a pocket is touched",
-    "loss": "W: mean power loss",
-    "orbit": "1: orbit radius of the cage about its own mean place over Cpr, rms",
-    "whirl_radius": "1: mean distance of the cage's centre from the bearing axis over Cpr",
-    "torque": "N m: mean torque of the shaft",
-    "cage_speed_ratio": "1: turn of the cage over turn of the shaft",
-}
-OVER_CPR = ("orbit", "whirl_radius")
-
 COLUMNS = {
-    "sweep": "text: tolerances, presets, slices or statistics",
+    "sweep": "text: tolerances, presets, slices or user",
     "case": "text: name of the scene, see summary.scenes",
     "name": "text: name of the point",
     "method": "text: integrator and its highest order; exact: without tangents of the rings' forces",
@@ -64,24 +52,11 @@ COLUMNS = {
     "error_load": "1: rms deviation of the outer raceways' loads over their mean, median over states",
     "error_cage_speed": "1: largest deviation of the cage's speed over its mean, median over states",
     "error_power": "1: deviation of the energy lost within the window over it, median over states",
-    "error_pocket_mean": "1: deviation of the mean of all pocket forces within the window, median over states",
-    "error_pocket_p95": "1: the same of the 95th percentile of forces on touched faces of pockets",
-    "error_duty": "1: the same of the share of time and rollers in which a pocket is touched",
-    "error_orbit": "1: deviation of the cage's orbit radius about its own mean place within the window, over Cpr",
-    **{f"{name}_worst": "1: the same, worst state" for name in measure.QUANTITIES + measure.OBSERVABLES},
+    **{f"{name}_worst": "1: the same, worst state" for name in measure.QUANTITIES},
     "error_displacement": "1: deviation of the ring's axial place under load over its place: stiffness",
-    **OBSERVED,
-    **{f"{name}_half_width": "the same: half the 95 % confidence interval" for name in OBSERVED},
-    **{
-        f"bias_{name}": "1: difference from tight runs from the same states, relative (orbit, whirl: of Cpr)"
-        for name in OBSERVED
-    },
-    **{f"bias_{name}_half_width": "1: half its 95 % confidence interval" for name in OBSERVED},
-    "batches": "1: runs that the statistics are over",
     **user.COLUMNS,
-    "energy_closure": "1: residual of the energy audit over the dissipated work; statistics: largest of the batches",
+    "energy_closure": "1: residual of the energy audit over the dissipated work",
     "warnings": "1: warnings of the watch over the runs of the windows, all states",
-    "failure": "text: why there are no figures",
     "scenes": "object: what each scene is",
     "presets": "object: the figures of each preset on the colliding cage",
     "pareto": "object: names of the points on the front, by case",
@@ -107,11 +82,7 @@ class Plan:
     fewer : tuple of str
         Cases that get only `FEWER_SCALES` and no other methods.
     revolutions : float
-        Turns of each run in which time is measured, of ten of a batch.
-    statistics : float
-        Length of the batches of the statistics, as a share of the case's; 0: none.
-    biased : tuple of str
-        Cases that get statistics.
+        Turns of each run in which time is measured.
     slices : dict of str to tuple of int
         Quadratures and their numbers of slices.
     checked : int
@@ -125,8 +96,6 @@ class Plan:
     methods: dict[str, tuple[float, ...]]
     fewer: tuple[str, ...]
     revolutions: float
-    statistics: float
-    biased: tuple[str, ...]
     slices: dict[str, tuple[int, ...]]
     checked: int
     repeats: int
@@ -145,8 +114,6 @@ FULL = Plan(
     },
     NEW,
     3.0,
-    1.0,
-    tuple(states.CASES),
     {"uniform": (8, 16, 20, 32, 64), "gauss": (4, 6, 8, 12, 16, 24)},
     1,
     3,
@@ -157,19 +124,13 @@ QUICK = Plan(
     {"bdf2exact": (1.0,), "bdf5": (0.01,), "erk": (0.1,)},
     NEW,
     1.0,
-    0.1,
-    ("collision", "light", "scatter"),
     {"uniform": (20,), "gauss": (8,)},
     1,
     2,
 )
-SMOKE = Plan(
-    {"collision": 2, "slow": 1}, (1.0,), {"erk": (1.0,)}, NEW, 0.1, 0.02, ("collision",), {"gauss": (8,)}, 0, 1
-)
+SMOKE = Plan({"collision": 2, "slow": 1}, (1.0,), {"erk": (1.0,)}, NEW, 0.1, {"gauss": (8,)}, 0, 1)
 
 FEWER_SCALES = (10.0, 3.0, 1.0, 0.3, 0.1)
-TIGHT_SCALE = 0.01
-"""Tolerances of the run that statistics are compared with; all its forces are exact."""
 FINE = 96
 """Gauss nodes of the reference of slices and quadratures."""
 SLICES_SCALE = 0.01
@@ -203,7 +164,7 @@ def sweep(report: common.Report, references: measure.References, plan: Plan) -> 
         found = measure.median_and_worst(references.errors_of(settings))
         few = case.states if preset else case.states[:3]
         loose = scale > LOOSE and method.startswith("bdf2")
-        turns = 0.1 * case.definition.batch * (plan.revolutions if loose else min(plan.revolutions, 0.5))
+        turns = case.definition.timed * (plan.revolutions if loose else min(plan.revolutions, 0.5))
         cost = measure.wall_time(case.scene, few, settings, turns, repeats=plan.repeats if loose else 1)
         report.add(
             sweep="presets" if preset else "tolerances",
@@ -246,31 +207,6 @@ def slices(report: common.Report, case: states.Case, plan: Plan) -> None:
             )
 
 
-def statistics(report: common.Report, case: states.Case, plan: Plan) -> None:
-    """Means beyond the comparable window, and how far each preset is off those of a tight run, with confidence intervals."""
-    turns = plan.statistics * case.definition.batch
-    tight_settings = measure.scaled(TIGHT_SCALE, max_order=case.definition.tight_order, rings_share=0.0)
-    points = {"tight": tight_settings, **measure.preset_settings()}
-    tight: dict[str, Any] = {}
-    for name, settings in points.items():
-        row: dict[str, Any] = {"sweep": "statistics", "case": case.name, "name": name}
-        row["preset"] = None if name == "tight" else name
-        try:
-            found = measure.batches_of(case, settings, turns)
-        except measure.BatchError as error:
-            report.add(**row, failure=str(error))
-            if name == "tight":
-                return
-            continue
-        tight = tight or found
-        for key in OBSERVED:
-            mean = measure.batch_mean(found[key])
-            off = measure.bias(found[key], tight[key], 1.0 if key in OVER_CPR else None)
-            row |= {key: mean.value, f"{key}_half_width": mean.half_width}
-            row |= {f"bias_{key}": off.value, f"bias_{key}_half_width": off.half_width} if name != "tight" else {}
-        report.add(**row, batches=len(case.states), energy_closure=float(found["energy_closure"].max()))
-
-
 def preset_figures(report: common.Report, case: states.Case, plan: Plan) -> dict[str, Any]:
     """What is asked for of each preset, on the colliding cage."""
     wanted = (
@@ -303,7 +239,6 @@ def run(plan: Plan, report: common.Report) -> None:
         "base_tolerances": measure.BASE,
         "reference": f"scale {measure.REFERENCE_SCALE:g}: "
         + ", ".join(f"{name} by {case.reference}" for name, case in cases.items()),
-        "tight": f"scale {TIGHT_SCALE:g}, BDF, every force exact",
         "scene": "30310 rig, effects of the paper ('scatter': as by default), 8 Gauss nodes a contact",
         "instruction_set": Simulation(cases["collision"].scene).instruction_set,
     }
@@ -325,8 +260,6 @@ def run(plan: Plan, report: common.Report) -> None:
             report.summary["reference_disagreement"][name] = references.disagreement(plan.checked)
         sweep(report, references, plan)
         report.summary["pareto"][name] = front_of(report.results, name)
-        if name in plan.biased and plan.statistics:
-            statistics(report, case, plan)
         print(f"  {clock.process_time() - began:.0f} s of processor time", flush=True)
     first = cases["collision"]
     report.summary["presets"] = preset_figures(report, first, plan)
@@ -377,10 +310,6 @@ def write_table(report: common.Report, path: Path) -> None:
         elif row["sweep"] == "presets":
             tolerances = {"tolerances": ACCURACY[row["preset"]].model_dump()}
             presets.setdefault(row["case"], {})[row["preset"]] = tolerances | short(row, kept)
-    for row in report.results:
-        if row["sweep"] == "statistics" and row["preset"] and "failure" not in row:
-            biases = [f"bias_{name}{end}" for name in BIASES for end in ("", "_half_width")]
-            presets[row["case"]][row["preset"]]["differences"] = common.plain(short(row, biases))
     windows = {name: [one["window_s"] for one in found] for name, found in report.summary["windows"].items()}
     table = {
         "made_by": "python benchmarks/work_precision.py --make-table",
@@ -396,11 +325,6 @@ def write_table(report: common.Report, path: Path) -> None:
     before = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
     if "load_drop" in before:  # of load_drop.py
         table["load_drop"] = before["load_drop"]
-    for case, found in before.get("presets_of_scenes", {}).items():
-        for name, preset in found.items():
-            # what preset_bias.py has measured stays
-            if "tolerances" in preset.get("bias", {}) and name in presets.get(case, {}):
-                presets[case][name]["bias"] = preset["bias"]
     path.write_text(json.dumps(common.plain(table), indent=1, allow_nan=False) + "\n", encoding="utf-8")
     print(f"wrote {path}")
 

@@ -1,4 +1,4 @@
-"""Trajectories compared with a reference, wall time a revolution, and statistics of longer runs."""
+"""Trajectories compared with a reference, wall time a revolution, and means of longer runs."""
 
 from __future__ import annotations
 
@@ -31,16 +31,14 @@ SAMPLE: Final = 2e-5
 TIMING_SAVE: Final = 1e-3
 """Time between records where wall time is measured (s): output is cheap then."""
 QUANTITIES: Final = ("error_cage_over_cpr", "error_load", "error_cage_speed", "error_power")
-OBSERVABLES: Final = ("error_pocket_mean", "error_pocket_p95", "error_duty", "error_orbit")
-"""What users read of a run, as means over a window."""
 SHORT: Final = 2e-3
 """Length over which a reference by BDF is checked with the explicit method (s)."""
 BATCH_RECORDS: Final = 3000
-"""Records of a batch of the statistics."""
+"""Records of a longer run."""
 PATIENCE: Final = 0.6
 """Processor time after which a timed run is not repeated (s)."""
-_GROUPS_OF_BATCHES: Final = ("time", "cage", "rollers", "pocket", "energy")
-_GROUPS: Final = ("time", "cage", "contacts", "pocket", "energy")
+_GROUPS_OF_BATCHES: Final = ("time", "cage", "rollers", "energy")
+_GROUPS: Final = ("time", "cage", "contacts", "energy")
 
 
 def scaled(scale: float, **more: Any) -> dict[str, Any]:
@@ -78,14 +76,6 @@ class Trajectory:
         Cage's speed of rotation (rad/s).
     lost : float
         Energy lost within the window (J).
-    pocket_mean : float
-        Mean force of all pockets together: impulse a second (N).
-    pocket_p95 : float
-        95th percentile of the forces on touched faces of pockets (N).
-    duty : float
-        Share of time and rollers in which a pocket is touched.
-    orbit : float
-        Orbit radius of the cage about its own mean place over Cpr, root mean square.
     warnings : int
         What the watch over the run had to say.
     """
@@ -94,27 +84,7 @@ class Trajectory:
     load: Array
     speed: Array
     lost: float
-    pocket_mean: float
-    pocket_p95: float
-    duty: float
-    orbit: float
     warnings: int = 0
-
-
-def pocket_figures(result: Result) -> tuple[float, float, float]:
-    """Mean of all pocket forces together (N), 95th percentile of those that touch (N), and the share that touches."""
-    force = result["pocket_force"]
-    touched = force[force > 0.0]
-    return (
-        float(force.sum(axis=(1, 2)).mean()),
-        float(np.percentile(touched, 95.0)) if touched.size else 0.0,
-        float((force > 0.0).any(axis=2).mean()),
-    )
-
-
-def orbit_of(result: Result) -> float:
-    """Orbit radius of the cage about its own mean place over Cpr, root mean square."""
-    return float(np.sqrt(np.mean(result.orbit_radius_over_cpr**2)))
 
 
 def lost_of(result: Result) -> float:
@@ -130,8 +100,6 @@ def trajectory_of(result: Result) -> Trajectory:
         result["outer_load"],
         result["cage_angular_velocity"][:, 2],
         lost_of(result),
-        *pocket_figures(result),
-        orbit_of(result),
         len(result.warnings),
     )
 
@@ -148,19 +116,13 @@ def errors(found: Trajectory, reference: Trajectory) -> dict[str, float]:
     """Deviations from a reference, all relative.
 
     The cage's centre: largest within the window, over Cpr. Contact load: root mean square over time and rollers, over the
-    mean load. Cage speed: largest, over its mean. Power: energy lost within the window. Pocket forces and the share of time
-    that pockets are touched: means over the window, nan where no pocket is touched. Orbit of the cage: over Cpr.
+    mean load. Cage speed: largest, over its mean. Power: energy lost within the window.
     """
     cage = float(np.linalg.norm(found.cage - reference.cage, axis=1).max())
     load = float(np.sqrt(np.mean((found.load - reference.load) ** 2)) / reference.load.mean())
     speed = float(np.abs(found.speed - reference.speed).max() / abs(reference.speed.mean()))
     power = abs(found.lost - reference.lost) / abs(reference.lost)
-    pocket = [
-        abs(getattr(found, name) / value - 1.0) if (value := getattr(reference, name)) > 0.0 else np.nan
-        for name in ("pocket_mean", "pocket_p95", "duty")
-    ]
-    values = (cage, load, speed, power, *pocket, abs(found.orbit - reference.orbit))
-    return dict(zip(QUANTITIES + OBSERVABLES, values, strict=True)) | {"warnings": found.warnings}
+    return dict(zip(QUANTITIES, (cage, load, speed, power), strict=True)) | {"warnings": found.warnings}
 
 
 REFERENCES: Final[dict[str, dict[str, Any]]] = {
@@ -211,7 +173,7 @@ class References:
 def median_and_worst(found: Sequence[Mapping[str, float]]) -> dict[str, float]:
     """Median over states of every error, and the worst as ``<name>_worst``; warnings of all of them."""
     out = {}
-    for name in QUANTITIES + OBSERVABLES:
+    for name in QUANTITIES:
         values = np.array([one[name] for one in found])
         known = values[np.isfinite(values)]
         out[name] = float(np.median(known)) if known.size else float("nan")
@@ -303,60 +265,26 @@ def batch_mean(values: Sequence[float] | Array) -> Mean:
     return Mean(float(batches.mean()), half, batches.size)
 
 
-class BatchError(Exception):
-    """A batch of the statistics did not reach its end."""
+def long_run(case: Case, settings: Settings, revolutions: float, scene: Scene) -> dict[str, Mean]:
+    """Torque, distance of the axes over Cpr and speed of the cage over that of the shaft: means of a run from each state.
 
-
-def batches_of(case: Case, settings: Settings, revolutions: float, scene: Scene | None = None) -> dict[str, Array]:
-    """Statistics beyond the windows: a batch is a run from each state, `revolutions` long. One value a batch of each.
-
-    All settings start from the same states, so that slow changes of the bearing's motion are the same in all. Torque, power
-    loss and cage speed are means over time out of the quadratures.
+    All settings start from the same states, so that slow changes of the bearing's motion are the same in all.
     """
-    rows = []
+    found: dict[str, list[float]] = {"torque": [], "whirl_radius": [], "cage_speed_ratio": []}
     for state in case.states:
-        sim = Simulation(at_state(case.scene if scene is None else scene, state), **settings)
+        sim = Simulation(at_state(scene, state), **settings)
         every = (RunOptions(revolutions=revolutions).end_time(sim.scene, sim.time) - sim.time) / BATCH_RECORDS
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RunWarning)
             result = sim.run(revolutions=revolutions, save_every=every, save_groups=_GROUPS_OF_BATCHES)
         if not result.success:
-            raise BatchError(result.message)
+            raise RuntimeError(result.message)
         turn = result["shaft_angle"][-1] - result["shaft_angle"][0]
-        row = {
-            "torque": float((result["work_shaft"][-1] - result["work_shaft"][0]) / turn),
-            "loss": lost_of(result) / result.duration,
-            "cage_slip": float(result.cage_slip.mean()),
-            "energy_closure": result.energy_closure,
-        }
-        names = ("pocket_mean", "pocket_p95", "duty", "orbit", "whirl_radius")
-        if result.has_cage:
-            found = (*pocket_figures(result), orbit_of(result), float(result.axis_distance_over_cpr.mean()))
-            row |= dict(zip(names, found, strict=True))
-            row["cage_speed_ratio"] = float((result["cage_angle"][-1] - result["cage_angle"][0]) / turn)
-        else:
-            orbit = result["roller_orbit_angle"]
-            row |= dict.fromkeys(names, np.nan)
-            row["cage_speed_ratio"] = float((orbit[-1] - orbit[0]).mean() / turn)
-        rows.append(row)
-    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
-
-
-def long_run(case: Case, settings: Settings, revolutions: float, scene: Scene | None = None) -> dict[str, Mean]:
-    """Means of `batches_of` with their confidence intervals."""
-    found = batches_of(case, settings, revolutions, scene)
+        turned = result["cage_angle"] if result.has_cage else result["roller_orbit_angle"].mean(axis=1)
+        found["torque"].append(float((result["work_shaft"][-1] - result["work_shaft"][0]) / turn))
+        found["whirl_radius"].append(float(result.axis_distance_over_cpr.mean()) if result.has_cage else np.nan)
+        found["cage_speed_ratio"].append(float((turned[-1] - turned[0]) / turn))
     return {name: batch_mean(values) for name, values in found.items()}
-
-
-def bias(found: Array, tight: Array, scale: float | None = None) -> Mean:
-    """Mean difference of batches from those of a tight tolerance, from the same states, with its confidence interval.
-
-    Over the mean of the tight ones, or a scale that is given.
-    """
-    over = abs(float(np.mean(tight))) if scale is None else scale
-    if not over > 0.0:
-        return Mean(float("nan"), float("nan"), len(tight))
-    return batch_mean((found - tight) / over)
 
 
 def pareto(points: Sequence[tuple[float, float]]) -> list[int]:

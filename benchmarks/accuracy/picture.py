@@ -1,4 +1,4 @@
-"""The picture of work_precision.py: fronts of error and wall time, slices, statistics."""
+"""The picture of work_precision.py: fronts of error and wall time, slices."""
 
 from __future__ import annotations
 

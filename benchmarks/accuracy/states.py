@@ -68,10 +68,8 @@ class CaseDefinition:
         Shortest window (s); longest window (s), also where fewer impacts happen: rolling without collisions.
     reference : {'erk', 'bdf'}
         Method of the reference trajectories: explicit, or BDF where explicit steps would be far too short.
-    batch : float
-        Turns of the shaft of a batch of the statistics.
-    tight_order : int
-        Highest order of BDF of the tight run that the statistics are compared with.
+    timed : float
+        Length of timed runs over that of the other cases.
     """
 
     text: str
@@ -87,8 +85,7 @@ class CaseDefinition:
     least_window: float = 4e-3
     longest_window: float = 20e-3
     reference: Literal["erk", "bdf"] = "erk"
-    batch: float = 10.0
-    tight_order: int = 5
+    timed: float = 1.0
 
 
 CASES: Final = {
@@ -117,8 +114,7 @@ CASES: Final = {
         least_window=40e-3,
         longest_window=100e-3,
         reference="bdf",
-        batch=1.0,
-        tight_order=2,
+        timed=0.1,
     ),
     "fast": CaseDefinition(
         "fast rotation, colliding cage",
@@ -130,7 +126,7 @@ CASES: Final = {
         5.3,
         True,
         least_window=1.5e-3,
-        batch=30.0,
+        timed=3.0,
     ),
     "scatter": CaseDefinition(
         "rollers of unequal diameter, within 2 um; effects as by default",
@@ -158,8 +154,7 @@ OF_FRONT: Final = {
         least_window=1e-3,
         longest_window=1e-3,
         reference="bdf",
-        batch=1.0,
-        tight_order=2,
+        timed=0.1,
     ),
 }
 """Further cases, of `benchmarks/front.py` alone."""

@@ -79,7 +79,7 @@ static void deform(const trb_body *body, const double *y, trb_deformed *deformed
   }
 }
 
-/* Of the mean axes. */
+/* Rigid motion that belongs to a rate of a coordinate: that of the mean axes; amplitudes of modes have none. */
 static trb_rigid motion_of(const trb_rigid_pose *pose, int coordinate)
 {
   if (coordinate < TRB_CAGE_SIZE) return trb_cage_motion(pose, coordinate);

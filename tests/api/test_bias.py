@@ -1,24 +1,16 @@
-"""What other starts and accuracies do to a largest force after a load that drops, and what estimates say of peaks."""
+"""What other starts and accuracies do to a largest force after a load that drops."""
 
 from __future__ import annotations
 
-import json
 import math
-import subprocess
-import sys
 import warnings
-from pathlib import Path
 
 import pytest
 
 import trbdyn as trb
-from trbdyn.base.shipped import DATA
 from trbdyn.model.cases import scene_30310
 from trbdyn.reporting import verdict
 from trbdyn.results import notes
-
-BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
-WHIRLING = trb.Start.whirl(0.9)
 
 DROP = trb.History.step((0.02, 0.04), (3000.0, 300.0, 3000.0))
 
@@ -65,21 +57,3 @@ def test_loads_that_do_not_drop_have_no_band():
     for load in (3000.0, rise):
         result = trb.Simulation(scene_30310(3000.0, load, ring="follows"), accuracy="fast").run(duration=3e-3)
         assert "pocket_force_peak_low" not in result.summary()
-
-
-def test_peaks_stand_beside_the_duty_in_an_estimate():
-    found = trb.Simulation(scene_30310(3000.0, 1230.0, start=WHIRLING), accuracy="fast").estimate(duration=1e-3)
-    assert found.bias_pocket_peak < -0.05
-    assert "bias of peaks" in str(found)
-
-
-@pytest.mark.slow
-def test_the_measurement_is_one_command(tmp_path):
-    table = tmp_path / "accuracy.json"
-    table.write_text((DATA / "accuracy.json").read_text())
-    before = json.loads(table.read_text())["presets_of_scenes"]
-    command = [sys.executable, "preset_bias.py", "--quick", "--cases", "collision", "--make-table", str(table)]
-    subprocess.run(command, cwd=BENCHMARKS, check=True, capture_output=True)
-    after = json.loads(table.read_text())["presets_of_scenes"]
-    assert after["light"] == before["light"]
-    assert after["collision"]["fast"]["bias"]["bias_pocket_peak"] < 0.0

@@ -80,12 +80,6 @@ class Estimate(Displayed):
         The largest of them.
     error_load, error_cage_speed, error_power : float
         Expected relative errors of contact load (rms), cage speed and power loss within the window.
-    bias_pocket_force, bias_contact_duty : float
-        Expected bias of the mean pocket force, and of the share of time that pockets are touched, over a longer run: mean
-        relative difference from runs with far smaller tolerances. nan where it was not measured: for tolerances that are not
-        those of a preset.
-    bias_pocket_peak, bias_raceway_peak : float
-        Expected bias of the largest forces in the pockets, and of the largest loads on the raceways, in the same way.
     window : float
         Length of trajectories that the errors belong to (s), median.
     case : str
@@ -109,34 +103,21 @@ class Estimate(Displayed):
     error_load: float
     error_cage_speed: float
     error_power: float
-    bias_pocket_force: float
-    bias_contact_duty: float
-    bias_pocket_peak: float
-    bias_raceway_peak: float
     window: float
     case: str
     extrapolated: bool
 
     def __str__(self) -> str:
-        lines = [
-            f"{self.bearing_time:.4g} s of bearing time in about {self.wall_s:.3g} s, {self.wall_s_low:.2g} to "
-            f"{self.wall_s_high:.2g} s (real time x {self.real_time_factor:.3g}), {self.steps:,} steps",
-            f"{self.records:,} records, {self.memory_mb:.3g} MB in memory",
-            f"cage centre within {100.0 * self.error_cage_over_cpr:.2g} % of Cpr over {1e3 * self.window:.2g} ms "
-            f"(worst {100.0 * self.error_cage_over_cpr_worst:.2g} %), power loss within {100.0 * self.error_power:.2g} % "
-            f"(scene '{self.case}')",
-        ]
-        if math.isfinite(self.bias_pocket_force):
-            lines.append(
-                f"bias of means over longer runs: pocket force {100.0 * self.bias_pocket_force:+.2g} %, "
-                f"contact duty {100.0 * self.bias_contact_duty:+.2g} %"
-            )
-        if math.isfinite(self.bias_pocket_peak):
-            lines.append(
-                f"bias of peaks: pocket forces {100.0 * self.bias_pocket_peak:+.2g} %, "
-                f"raceway loads {100.0 * self.bias_raceway_peak:+.2g} %"
-            )
-        return "\n".join(lines)
+        return "\n".join(
+            [
+                f"{self.bearing_time:.4g} s of bearing time in about {self.wall_s:.3g} s, {self.wall_s_low:.2g} to "
+                f"{self.wall_s_high:.2g} s (real time x {self.real_time_factor:.3g}), {self.steps:,} steps",
+                f"{self.records:,} records, {self.memory_mb:.3g} MB in memory",
+                f"cage centre within {100.0 * self.error_cage_over_cpr:.2g} % of Cpr over {1e3 * self.window:.2g} ms "
+                f"(worst {100.0 * self.error_cage_over_cpr_worst:.2g} %), power loss within {100.0 * self.error_power:.2g} % "
+                f"(scene '{self.case}')",
+            ]
+        )
 
     __repr__ = __str__
 
@@ -153,10 +134,6 @@ class Estimate(Displayed):
             "error of the cage's centre over Cpr": (100.0 * self.error_cage_over_cpr, "%"),
             "error of contact loads": (100.0 * self.error_load, "%"),
             "error of the power loss": (100.0 * self.error_power, "%"),
-            "bias of mean pocket forces": (100.0 * self.bias_pocket_force, "%"),
-            "bias of contact duty": (100.0 * self.bias_contact_duty, "%"),
-            "bias of largest pocket forces": (100.0 * self.bias_pocket_peak, "%"),
-            "bias of largest loads on raceways": (100.0 * self.bias_raceway_peak, "%"),
         }
         rows = tuple(
             (words, f"{value:,}" if isinstance(value, int) else f"{value:.3g}", unit)
@@ -164,18 +141,12 @@ class Estimate(Displayed):
             if math.isfinite(value)
         )
         note = (
-            f"Errors and biases are those of the measured scene '{self.case}', the one most like this; "
+            f"Errors are those of the measured scene '{self.case}', the one most like this; "
             f"errors over {1e3 * self.window:.2g} ms."
         )
         return Shown("Estimate of a run", rows, ("quantity", "value", "unit"), (note,))
 
 
-_BIASES: Final = {
-    "bias_pocket_force": "bias_pocket_mean",
-    "bias_contact_duty": "bias_duty",
-    "bias_pocket_peak": "bias_pocket_peak",
-    "bias_raceway_peak": "bias_raceway_peak",
-}
 _ERRORS: Final = ("error_cage_over_cpr", "error_cage_over_cpr_worst", "error_load", "error_cage_speed", "error_power")
 
 
@@ -297,25 +268,19 @@ def _errors(sim: Simulation) -> dict[str, Any]:
     options, measured = sim.options, table()
     case = case_like(sim, measured["scenes"])
     window = float(np.median(measured["windows_s"][case]))
-    place = {"window": window, "case": case} | dict.fromkeys(_BIASES, math.nan)
+    place = {"window": window, "case": case}
     standard = options.max_order == 2 and options.rings_share is None and options.impact_share is None
     known = len(sim.bearings) == 1 and options.integrator in MEASURED and standard and sim.scene.effects.has_cage
     if not known:
         return place | dict.fromkeys(_ERRORS, math.nan) | {"extrapolated": True}
     preset = measured["presets_of_scenes"].get(case, {}).get(preset_like(options))
     if preset is not None:
-        bias = preset.get("bias", {})
-        far = {name: _number(bias.get(key)) for name, key in _BIASES.items()}
-        return place | far | {name: _number(preset[name]) for name in _ERRORS} | {"extrapolated": False}
+        return place | {name: preset[name] for name in _ERRORS} | {"extrapolated": False}
     scale = _scale(options.tolerances.model_dump(), measured["base_tolerances"])
     points = measured["points"][case]
     scales = [point["scale"] for point in points]
     errors = {name: _between(scale, scales, [point[name] for point in points]) for name in _ERRORS}
     return place | errors | {"extrapolated": not scales[0] <= scale <= scales[-1]}
-
-
-def _number(value: float | None) -> float:
-    return math.nan if value is None else value
 
 
 def case_like(sim: Simulation, scenes: Mapping[str, Mapping[str, Any]]) -> str:

@@ -426,7 +426,8 @@ class Search:
     def values(self) -> Array:
         """Results of longer runs: of confirmed designs as they are, of others with the least change that these make likely.
 
-        So no design is given up because another one failed, but where longer runs were made near to it.
+        The change is the lower end of the fit's band: a design counts as worse only where longer runs of designs near to it
+        were worse.
         """
         known = np.isfinite(self.unit).all(axis=1)
         ran, seen = self.ran & known, self.confirmed & known
