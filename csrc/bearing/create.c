@@ -143,21 +143,29 @@ static trb_status check_front_rib(const trb_model *m, trb_message *message)
 }
 
 /* Strips of the cage's guiding surface: Gauss nodes along its width. */
-static void fill_land(trb_model *m)
+void trb_guided_fill(const trb_model *m, const trb_land_inputs *land, const trb_cage_inputs *cage, trb_guided *to)
 {
   const trb_params *p = &m->params;
   const double      modulus =
-      trb_composite_modulus(p->cage.youngs_modulus, p->cage.poisson_ratio, p->bearing.youngs_modulus, p->bearing.poisson_ratio);
-  trb_quadrature(TRB_QUADRATURE_GAUSS, TRB_LAND_STRIPS, m->land_station, m->land_weight);
+      trb_composite_modulus(cage->youngs_modulus, cage->poisson_ratio, p->bearing.youngs_modulus, p->bearing.poisson_ratio);
+  to->given = *land;
+  trb_quadrature(TRB_QUADRATURE_GAUSS, TRB_LAND_STRIPS, to->station, to->weight);
   for (int k = 0; k < TRB_LAND_STRIPS; k++) {
-    m->land_station[k] *= 0.5 * p->land.width;
-    m->land_weight[k] *= 0.5 * p->land.width;
+    to->station[k] *= 0.5 * land->width;
+    to->weight[k] *= 0.5 * land->width;
   }
-  m->guide[TRB_RACE_OUTER] = (trb_guide){p->land.outer_radius, 1};
-  m->guide[TRB_RACE_INNER] = (trb_guide){p->land.inner_radius, 0};
-  m->land_place = p->land.offset - p->cage.offset;
-  m->land_palmgren = exp(trb_line_log_load(0.0, modulus, p->land.width));
-  m->land_film = m->film && p->land.fill > 0.0;
+  to->place = land->offset - cage->offset;
+  to->palmgren = exp(trb_line_log_load(0.0, modulus, land->width));
+  to->film = m->film && land->fill > 0.0;
+  to->damping = trb_damping_of_cage(m);
+  to->mass = cage->mass;
+}
+
+static void fill_land(trb_model *m)
+{
+  m->guide[TRB_RACE_OUTER] = (trb_guide){m->params.land.outer_radius, 1};
+  m->guide[TRB_RACE_INNER] = (trb_guide){m->params.land.inner_radius, 0};
+  trb_guided_fill(m, &m->params.land, &m->params.cage, &m->guided);
 }
 
 static void fill_constants(trb_model *m)
@@ -166,8 +174,6 @@ static void fill_constants(trb_model *m)
   const trb_geometry *g = &m->geometry;
   m->log_modulus = log(g->effective_modulus);
   m->log_palmgren = trb_line_log_load(0.0, g->effective_modulus, p->roller.effective_length);
-  m->pocket_palmgren = exp(trb_line_log_load(0.0, g->pocket_modulus, p->roller.effective_length));
-  m->wall_stiffness = p->roller.end_stiffness * (g->pocket_modulus / g->effective_modulus);
   m->axis_sine = sin(g->roller_axis_angle);
   m->axis_cosine = cos(g->roller_axis_angle);
   m->log_g = log(trb_max(p->oil.pressure_coefficient, 1e-30) * g->effective_modulus);
@@ -183,7 +189,6 @@ static void fill_constants(trb_model *m)
                        : p->effects.damping > 0.0             ? p->effects.damping_race
                                                               : 0.0;
   m->damping_fade = p->effects.damping == TRB_DAMPING_FILM ? 1.0 / p->effects.film_damping_depth : 0.0;
-  m->pocket_film = dry || p->effects.lubrication == TRB_LUBRICATION_BOUNDARY ? 0.0 : p->pocket.film;
 }
 
 /* Up to the last one whose effect is on. */
@@ -208,8 +213,6 @@ static void allocate(trb_model *m)
   m->centre = doubles(m, lanes * rollers);
   m->sphere = doubles(m, lanes * rollers);
   m->end_spheres = trb_memory_zeros(&m->memory, 2 * rollers, sizeof *m->end_spheres);
-  m->pocket_axes = trb_memory_zeros(&m->memory, rollers, sizeof *m->pocket_axes);
-  m->pocket_origin = trb_memory_zeros(&m->memory, rollers, sizeof *m->pocket_origin);
   m->nominal_angle = trb_memory_zeros(&m->memory, rollers, sizeof *m->nominal_angle);
   for (int race = 0; race < TRB_N_RACES; race++) {
     m->race[race].race = race;
@@ -219,6 +222,14 @@ static void allocate(trb_model *m)
     m->race[race].radius = doubles(m, lanes);
     m->race[race].roller_share = doubles(m, lanes);
     m->race[race].drop = doubles(m, lanes);
+  }
+}
+
+static void place_rollers(trb_model *m)
+{
+  for (int j = 0; j < m->n_rollers; j++) {
+    const double angle = 2.0 * TRB_PI * j / m->n_rollers;
+    m->nominal_angle[j] = (trb_angle){cos(angle), sin(angle)};
   }
 }
 
@@ -302,6 +313,7 @@ static trb_status fill(trb_model *m, const double *deviation, const trb_face *fa
   trb_surfaces_build(&m->params, &m->geometry, &m->surfaces);
   if ((status = check_front_rib(m, message)) != TRB_OK) return status;
   m->n_rollers = (int)m->params.bearing.n_rollers;
+  m->n_slots = 1;
   m->n_nodes = (int)m->params.effects.n_slices;
   m->n_lanes = (m->n_nodes + TRB_LANE_PAD - 1) / TRB_LANE_PAD * TRB_LANE_PAD;
   allocate(m);
@@ -313,12 +325,12 @@ static trb_status fill(trb_model *m, const double *deviation, const trb_face *fa
     m->diameter_deviation[j] = deviation[j];
   }
   if ((status = fill_nodes(m, NULL, message)) != TRB_OK) return status;
-  if ((status = trb_pockets_fill_faces(m, faces, n_faces, message)) != TRB_OK) return status;
+  if ((status = trb_pockets_fill(m, &m->params.pocket, &m->params.cage, faces, n_faces, &m->pockets, message)) != TRB_OK) return status;
   m->n_losses = losses_of(&m->params);
   fill_ends(m, NULL);
   fill_constants(m);
   fill_land(m);
-  trb_pockets_place(m);
+  place_rollers(m);
   return trb_ribs_fill(m, message);
 }
 
@@ -364,14 +376,14 @@ trb_status trb_model_set_modes(trb_model *m, const double *rows, int n_modes, in
     return trb_fail(message, TRB_ERR_INPUT, "cage_modes = %g: %d modes are given", m->params.cage.n_modes, n_modes);
   if (n_modes <= 0) return TRB_OK;
   const trb_status status =
-      trb_modes_read(to, &m->memory, m->n_rollers * m->n_slots, m->first_face[m->n_rollers], rows, n_modes, n_columns, message);
+      trb_modes_read(to, &m->memory, m->n_rollers * m->n_slots, m->pockets.first_face[m->n_rollers], rows, n_modes, n_columns, message);
   if (status != TRB_OK) return status;
   for (int j = 0, leader = 0; j < m->n_rollers; j++)
-    for (int f = m->first_face[j]; f < m->first_face[j + 1]; f++) {
-      if (m->faces[f].n_facets > 0) leader = f;
-      const int at = TRB_MODE_shapes + TRB_SHAPE * (j * m->n_slots + m->faces[f].slot);
+    for (int f = m->pockets.first_face[j]; f < m->pockets.first_face[j + 1]; f++) {
+      if (m->pockets.faces[f].n_facets > 0) leader = f;
+      const int at = TRB_MODE_shapes + TRB_SHAPE * (j * m->n_slots + m->pockets.faces[f].slot);
       double   *shapes = to->shapes + (size_t)f * (size_t)n_modes * TRB_SHAPE_ROOM;
-      to->middle[f] = m->faces[leader].middle; /* a surface moves as one */
+      to->middle[f] = m->pockets.faces[leader].middle; /* a surface moves as one */
       for (int i = 0; i < n_modes; i++)
         memcpy(shapes + (size_t)i * TRB_SHAPE_ROOM, rows + (size_t)i * (size_t)n_columns + at, TRB_SHAPE * sizeof *shapes);
     }

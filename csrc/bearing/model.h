@@ -64,6 +64,18 @@ typedef struct trb_guide {
   int    inside; /* 1: the cage runs inside the land */
 } trb_guide;
 
+/* The surface of a cage that runs on a land, cut into strips along its width. */
+typedef struct trb_guided {
+  trb_land_inputs given;
+  double          station[TRB_LAND_STRIPS]; /* of the strips, from the middle of the surface, m */
+  double          weight[TRB_LAND_STRIPS];  /* their widths, m */
+  double          place;                    /* middle of the surface from the cage's centre of mass, m */
+  double          palmgren;                 /* load per length of cage and land at d = 1 m */
+  double          damping;                  /* normal damping of the contact, s/m */
+  double          mass;                     /* of the cage, kg */
+  int             film;                     /* there is an oil film */
+} trb_guided;
+
 /* A ring with coordinates, with all that moves with it. Forces act at its reference point, which contacts read, too. */
 typedef struct trb_ring_body {
   double mass, inertia_axial, inertia_transverse;
@@ -99,55 +111,59 @@ typedef struct trb_pocket_face {
   int         slot;             /* column in results */
 } trb_pocket_face;
 
+/* A row of pockets, one for each roller, in a cage. */
+typedef struct trb_pockets {
+  trb_pocket_inputs given;
+  double            film;           /* gap between roller and bar in which a film acts, m; 0: there is none */
+  double            damping;        /* normal damping of contacts, s/m */
+  double            palmgren;       /* load per length of roller and cage at d = 1 m */
+  double            wall_stiffness; /* stiffness of roller end against a wall of the cage: force = k d^1.5 */
+  double            offset;         /* axial position of the cage's centre of mass from the roller-centre plane, m */
+  trb_pocket_face  *faces;          /* all faces, grouped by pocket */
+  int              *first_face;     /* per pocket, n_rollers + 1 entries: its faces are [first, next first) */
+  trb_planes       *planes;         /* as many as faces: at face i of a surface those of its facets from TRB_PLANES_TOGETHER i on */
+  trb_frame        *axes;           /* per pocket: n, t, a of the nominal roller, in the cage's body */
+  trb_vec3         *origin;         /* per pocket: nominal mid length, from the cage's centre of mass, m */
+} trb_pockets;
+
 typedef struct trb_model {
-  trb_params       params;             /* as given, checked */
-  trb_geometry     geometry;           /* derived */
-  trb_surfaces     surfaces;           /* of rings and rollers */
-  int              n_rollers;          /* Z */
-  int              n_nodes;            /* nodes along a contact line */
-  int              n_lanes;            /* the same, padded */
-  int              n_slots;            /* most faces in a pocket, at least 1 */
-  double          *diameter_deviation; /* per roller, m */
-  double          *station;            /* per lane: node's station from mid length, m */
-  double          *cell;               /* ends of the nodes' cells, as long as their weights: n_nodes + 1 stations, m */
-  double          *centre;             /* per roller and lane: sphere's centre from the centre of mass, along the axis, m */
-  double          *sphere;             /* per roller and lane: sphere's radius, m */
-  trb_sphere      *end_spheres;        /* per roller: of a flank around all profiles at both ends of the effective length */
-  trb_race_nodes   race[TRB_N_RACES];
-  trb_pocket_face *faces;      /* all faces, grouped by pocket */
-  int             *first_face; /* per pocket, n_rollers + 1 entries: its faces are [first, next first) */
-  trb_planes      *planes;     /* as many as faces: at face i of a surface those of its facets from TRB_PLANES_TOGETHER i on */
+  trb_params     params;             /* as given, checked */
+  trb_geometry   geometry;           /* derived */
+  trb_surfaces   surfaces;           /* of rings and rollers */
+  int            n_rollers;          /* Z */
+  int            n_nodes;            /* nodes along a contact line */
+  int            n_lanes;            /* the same, padded */
+  int            n_slots;            /* most faces in a pocket of any row, at least 1 */
+  double        *diameter_deviation; /* per roller, m */
+  double        *station;            /* per lane: node's station from mid length, m */
+  double        *cell;               /* ends of the nodes' cells, as long as their weights: n_nodes + 1 stations, m */
+  double        *centre;             /* per roller and lane: sphere's centre from the centre of mass, along the axis, m */
+  double        *sphere;             /* per roller and lane: sphere's radius, m */
+  trb_sphere    *end_spheres;        /* per roller: of a flank around all profiles at both ends of the effective length */
+  trb_race_nodes race[TRB_N_RACES];
+  trb_pockets    pockets; /* of its cage */
+  trb_guided     guided;  /* surface of its cage on a land */
   /* constants of the laws */
-  double        log_modulus;                   /* ln E' */
-  double        log_palmgren;                  /* ln of the load per length of roller and ring at d = 1 m */
-  double        pocket_palmgren;               /* load per length of roller and cage at d = 1 m */
-  double        wall_stiffness;                /* stiffness of roller end against a wall of the cage: force = k d^1.5 */
-  double        axis_sine, axis_cosine;        /* of the roller axis' angle */
-  double        log_g;                         /* ln G */
-  double        log_viscosity;                 /* ln eta0 */
-  double        log_thermal;                   /* ln(eta0 beta/k') */
-  double        replenishment;                 /* decline of the film's supply at a raceway with its mean speed, s/m */
-  trb_rib       rib[TRB_N_RACES][TRB_N_ENDS];  /* conical ribs, by the raceway of their ring and the end that they meet */
-  trb_ring_body ring[TRB_N_RACES];             /* rings, by their raceway, where they have coordinates */
-  trb_guide     guide[TRB_N_RACES];            /* lands, by the raceway of their ring */
-  trb_frame    *pocket_axes;                   /* per pocket: n, t, a of the nominal roller, in the cage's body */
-  trb_angle    *nominal_angle;                 /* per roller: of its nominal place in the frame R */
-  trb_vec3     *pocket_origin;                 /* per pocket: nominal mid length, from the cage's centre of mass, m */
-  double        land_station[TRB_LAND_STRIPS]; /* of the guiding surface's strips, from its middle, m */
-  double        land_weight[TRB_LAND_STRIPS];  /* their widths, m */
-  double        land_place;                    /* middle of the guiding surface from the cage's centre of mass, m */
-  double        land_palmgren;                 /* load per length of cage and land at d = 1 m */
-  int           land_film;                     /* the land has an oil film */
-  int           friction;                      /* any friction at raceways and ribs at all */
-  int           pocket_friction;               /* any friction in the pockets */
-  int           film;                          /* films are needed */
-  double        contact_damping;               /* normal damping of raceways and ribs where the interference is small, s/m */
-  double        damping_fade;                  /* 1 over the interference at which it has fallen to half, 1/m; 0: constant */
-  double        pocket_film;                   /* gap between roller and bar in which a film acts, m; 0: there is none */
-  trb_modes     modes;                         /* of an elastic cage */
-  trb_form      form;                          /* of surfaces off their true form */
-  int           n_losses;                      /* entries of the list of losses (bearing/losses.h) that have a quadrature */
-  trb_memory    memory;                        /* of all arrays */
+  double        log_modulus;                  /* ln E' */
+  double        log_palmgren;                 /* ln of the load per length of roller and ring at d = 1 m */
+  double        axis_sine, axis_cosine;       /* of the roller axis' angle */
+  double        log_g;                        /* ln G */
+  double        log_viscosity;                /* ln eta0 */
+  double        log_thermal;                  /* ln(eta0 beta/k') */
+  double        replenishment;                /* decline of the film's supply at a raceway with its mean speed, s/m */
+  trb_rib       rib[TRB_N_RACES][TRB_N_ENDS]; /* conical ribs, by the raceway of their ring and the end that they meet */
+  trb_ring_body ring[TRB_N_RACES];            /* rings, by their raceway, where they have coordinates */
+  trb_guide     guide[TRB_N_RACES];           /* lands, by the raceway of their ring */
+  trb_angle    *nominal_angle;                /* per roller: of its nominal place in the frame R */
+  int           friction;                     /* any friction at raceways and ribs at all */
+  int           pocket_friction;              /* any friction in the pockets */
+  int           film;                         /* films are needed */
+  double        contact_damping;              /* normal damping of raceways and ribs where the interference is small, s/m */
+  double        damping_fade;                 /* 1 over the interference at which it has fallen to half, 1/m; 0: constant */
+  trb_modes     modes;                        /* of an elastic cage */
+  trb_form      form;                         /* of surfaces off their true form */
+  int           n_losses;                     /* entries of the list of losses (bearing/losses.h) that have a quadrature */
+  trb_memory    memory;                       /* of all arrays */
 } trb_model;
 
 /* Whether rollers and raceways are cylinders. */
@@ -160,6 +176,12 @@ static inline int trb_has_cage(const trb_model *model) { return model->params.ef
 static inline double trb_contact_damping(const trb_model *model, double interference)
 {
   return model->contact_damping / (1.0 + model->damping_fade * (interference > 0.0 ? interference : 0.0));
+}
+
+/* Coefficient of the normal damping of contacts of a cage, s/m. */
+static inline double trb_damping_of_cage(const trb_model *model)
+{
+  return model->params.effects.damping > 0.0 ? model->params.pocket.damping : 0.0;
 }
 
 /* Distance of the farthest sphere of the flank from the centre of mass of its roller, m. */
@@ -177,6 +199,8 @@ trb_status trb_model_set_form(trb_model *model, const double *rows, int n_rows, 
 /* Gives a new model what profiles drop at the nodes, m: rows of n_nodes for the rollers, in addition to their own profile and perpendicular to
  * their axis, the outer and the inner raceway; none: raceways are straight. */
 trb_status trb_model_set_drops(trb_model *model, const double *rows, int n_rows, int n_columns, trb_message *message);
-void       trb_model_free(trb_model *model);
+/* Fills a block of the surface by which a cage runs on a land. */
+void trb_guided_fill(const trb_model *model, const trb_land_inputs *land, const trb_cage_inputs *cage, trb_guided *guided);
+void trb_model_free(trb_model *model);
 
 #endif

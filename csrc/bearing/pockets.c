@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "laws/line_contact.h"
 
 static trb_status check_face(const trb_face *f, int index, int n_rollers, trb_message *message)
 {
@@ -45,9 +46,9 @@ static trb_status check_face(const trb_face *f, int index, int n_rollers, trb_me
 static int face_in_pocket(const trb_face *f, int pocket) { return f->pocket[0] < 0.0 || (int)f->pocket[0] == pocket; }
 
 /* Faces that the scene's effects leave out are not in the model, so no loop sees them. */
-static int face_is_on(const trb_model *m, const trb_face *f)
+static int face_is_on(const trb_model *m, const trb_pockets *to, const trb_face *f)
 {
-  return trb_has_cage(m) && (f->part[0] == TRB_PART_FLANK ? m->params.pocket.bars > 0.0 : m->params.pocket.ends > 0.0);
+  return trb_has_cage(m) && (f->part[0] == TRB_PART_FLANK ? to->given.bars > 0.0 : to->given.ends > 0.0);
 }
 
 static void measure(trb_pocket_face *f)
@@ -69,10 +70,10 @@ static trb_polygon surface_of(const trb_face *f)
   return p;
 }
 
-static int has_slot(const trb_model *m, int first, int end, int slot)
+static int has_slot(const trb_pockets *to, int first, int end, int slot)
 {
   for (int i = first; i < end; i++)
-    if (m->faces[i].slot == slot) return 1;
+    if (to->faces[i].slot == slot) return 1;
   return 0;
 }
 
@@ -90,16 +91,17 @@ static void fill_planes(const trb_pocket_face *first, trb_planes *planes)
 }
 
 /* Adds the facets of the slot of a face, which is the first one of them. */
-static trb_status add_surface(trb_model *m, const trb_face *faces, int n_faces, int pocket, int first, int *count, trb_message *message)
+static trb_status add_surface(const trb_model *m, trb_pockets *row, const trb_face *faces, int n_faces, int pocket, int first, int *count,
+                              trb_message *message)
 {
-  trb_pocket_face *leader = &m->faces[*count];
+  trb_pocket_face *leader = &row->faces[*count];
   for (int i = first; i < n_faces; i++) {
     const trb_face *f = &faces[i];
-    if (f->slot[0] != faces[first].slot[0] || !face_in_pocket(f, pocket) || !face_is_on(m, f)) continue;
+    if (f->slot[0] != faces[first].slot[0] || !face_in_pocket(f, pocket) || !face_is_on(m, row, f)) continue;
     if (f->part[0] != faces[first].part[0])
       return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: part = %g: must be that of face %d, which has the same slot", i, f->part[0],
                       first);
-    trb_pocket_face *to = &m->faces[(*count)++];
+    trb_pocket_face *to = &row->faces[(*count)++];
     to->surface = surface_of(f);
     to->stiffness_factor = f->stiffness_factor[0];
     to->friction_factor = f->friction_factor[0];
@@ -108,46 +110,65 @@ static trb_status add_surface(trb_model *m, const trb_face *faces, int n_faces, 
     measure(to);
     leader->n_facets++;
   }
-  fill_planes(leader, m->planes + (leader - m->faces));
+  fill_planes(leader, row->planes + (leader - row->faces));
   return TRB_OK;
 }
 
-trb_status trb_pockets_fill_faces(trb_model *m, const trb_face *faces, int n_faces, trb_message *message)
+static trb_status fill_faces(trb_model *m, const trb_face *faces, int n_faces, trb_pockets *to, trb_message *message)
 {
   size_t total = 0;
-  m->n_slots = 1;
   for (int i = 0; i < n_faces; i++) {
     const trb_status status = check_face(&faces[i], i, m->n_rollers, message);
     if (status != TRB_OK) return status;
     if ((int)faces[i].slot[0] + 1 > m->n_slots) m->n_slots = (int)faces[i].slot[0] + 1;
     total += faces[i].pocket[0] < 0.0 ? (size_t)m->n_rollers : 1;
   }
-  m->faces = trb_memory_zeros(&m->memory, total, sizeof *m->faces);
-  m->first_face = trb_memory_zeros(&m->memory, (size_t)m->n_rollers + 1, sizeof *m->first_face);
-  m->planes = trb_memory_zeros(&m->memory, total, sizeof *m->planes);
+  to->faces = trb_memory_zeros(&m->memory, total, sizeof *to->faces);
+  to->first_face = trb_memory_zeros(&m->memory, (size_t)m->n_rollers + 1, sizeof *to->first_face);
+  to->planes = trb_memory_zeros(&m->memory, total, sizeof *to->planes);
   if (m->memory.lacks) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for %zu pocket faces", total);
   int count = 0;
   for (int pocket = 0; pocket < m->n_rollers; pocket++) {
-    m->first_face[pocket] = count;
+    to->first_face[pocket] = count;
     for (int i = 0; i < n_faces; i++) {
-      if (!face_in_pocket(&faces[i], pocket) || !face_is_on(m, &faces[i])) continue;
-      if (has_slot(m, m->first_face[pocket], count, (int)faces[i].slot[0])) continue;
-      const trb_status status = add_surface(m, faces, n_faces, pocket, i, &count, message);
+      if (!face_in_pocket(&faces[i], pocket) || !face_is_on(m, to, &faces[i])) continue;
+      if (has_slot(to, to->first_face[pocket], count, (int)faces[i].slot[0])) continue;
+      const trb_status status = add_surface(m, to, faces, n_faces, pocket, i, &count, message);
       if (status != TRB_OK) return status;
     }
   }
-  m->first_face[m->n_rollers] = count;
+  to->first_face[m->n_rollers] = count;
   return TRB_OK;
 }
 
-void trb_pockets_place(trb_model *m)
+static trb_status place_pockets(trb_model *m, trb_pockets *to, trb_message *message)
 {
   const trb_geometry *g = &m->geometry;
   const double        sm = sin(g->roller_axis_angle), cm = cos(g->roller_axis_angle), radius = 0.5 * m->params.bearing.pitch_diameter;
+  to->axes = trb_memory_zeros(&m->memory, (size_t)m->n_rollers, sizeof *to->axes);
+  to->origin = trb_memory_zeros(&m->memory, (size_t)m->n_rollers, sizeof *to->origin);
+  if (m->memory.lacks) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for %d pockets", m->n_rollers);
   for (int j = 0; j < m->n_rollers; j++) {
     const double angle = 2.0 * TRB_PI * j / m->n_rollers, cosine = cos(angle), sine = sin(angle);
-    m->nominal_angle[j] = (trb_angle){cosine, sine};
-    m->pocket_axes[j] = (trb_frame){{cm * cosine, cm * sine, -sm}, {-sine, cosine, 0.0}, {sm * cosine, sm * sine, cm}};
-    m->pocket_origin[j] = trb_v(radius * cosine, radius * sine, -m->params.cage.offset);
+    to->axes[j] = (trb_frame){{cm * cosine, cm * sine, -sm}, {-sine, cosine, 0.0}, {sm * cosine, sm * sine, cm}};
+    to->origin[j] = trb_v(radius * cosine, radius * sine, -to->offset);
   }
+  return TRB_OK;
+}
+
+trb_status trb_pockets_fill(trb_model *m, const trb_pocket_inputs *given, const trb_cage_inputs *cage, const trb_face *faces, int n_faces,
+                            trb_pockets *to, trb_message *message)
+{
+  const trb_params *p = &m->params;
+  const int         has_oil = p->effects.lubrication != TRB_LUBRICATION_DRY && p->effects.lubrication != TRB_LUBRICATION_BOUNDARY;
+  const double      modulus =
+      trb_composite_modulus(p->roller.youngs_modulus, p->roller.poisson_ratio, cage->youngs_modulus, cage->poisson_ratio);
+  to->given = *given;
+  to->film = has_oil ? given->film : 0.0;
+  to->damping = p->effects.damping > 0.0 ? given->damping : 0.0;
+  to->palmgren = exp(trb_line_log_load(0.0, modulus, p->roller.effective_length));
+  to->wall_stiffness = p->roller.end_stiffness * (modulus / m->geometry.effective_modulus);
+  to->offset = cage->offset;
+  const trb_status status = fill_faces(m, faces, n_faces, to, message);
+  return status == TRB_OK ? place_pockets(m, to, message) : status;
 }

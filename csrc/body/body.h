@@ -55,7 +55,7 @@ typedef struct trb_body_kind {
   double (*kinetic)(const trb_model *m, const trb_body *body, const trb_rigid_pose *pose); /* energy, J */
   /* of a body that holds all rollers at even spacing on one orbit (motion/spacer.h): its moment of inertia about the bearing's axis; NULL: it does
    * not; its turn about that axis, minus the kinematic one, and its angular velocity are these coordinates */
-  double (*spacing)(const trb_model *m);
+  double (*spacing)(const trb_body *body);
   int turn, turning;
   /* of bodies that deform: amplitudes and their rates out of the coordinates; what forces on the modes add to the rates of the coordinates; the
    * coordinate that goes with the amplitude of a mode (that of its rate is the next one), and amplitude and rate for a unit of both; slopes of the

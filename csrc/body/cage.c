@@ -6,9 +6,9 @@ static const trb_vec3 none = {0, 0, 0}, first = {1, 0, 0}, second = {0, 1, 0}, t
 
 void trb_cage_pose(const trb_model *m, const trb_body *body, const trb_drive *drive, const double *y, trb_rigid_pose *pose)
 {
-  (void)body;
-  const trb_angle turn = trb_angle_of(y[TRB_CAGE_psi]);
-  pose->x = trb_v(y[TRB_CAGE_x], y[TRB_CAGE_y], m->geometry.centre_plane + m->params.cage.offset + y[TRB_CAGE_z]);
+  const trb_cage_inputs *cage = body->own;
+  const trb_angle        turn = trb_angle_of(y[TRB_CAGE_psi]);
+  pose->x = trb_v(y[TRB_CAGE_x], y[TRB_CAGE_y], m->geometry.centre_plane + cage->offset + y[TRB_CAGE_z]);
   pose->frame = trb_tilted_frame(y[TRB_CAGE_skew], y[TRB_CAGE_tilt]);
   pose->body.n = trb_add(trb_scale(turn.cosine, pose->frame.n), trb_scale(turn.sine, pose->frame.t));
   pose->body.t = trb_sub(trb_scale(turn.cosine, pose->frame.t), trb_scale(turn.sine, pose->frame.n));
@@ -21,13 +21,13 @@ void trb_cage_pose(const trb_model *m, const trb_body *body, const trb_drive *dr
 void trb_cage_rates(const trb_model *m, const trb_body *body, const trb_drive *drive, const trb_rigid_pose *c, const double *y,
                     const trb_wrench *load, double *rates)
 {
-  (void)body;
+  const trb_cage_inputs *cage = body->own;
   memset(rates, 0, TRB_CAGE_SIZE * sizeof *rates);
   if (m->params.effects.with_cage <= 0.0) return;
-  const double         w = drive->frame_speed, per_mass = 1.0 / m->params.cage.mass;
+  const double         w = drive->frame_speed, per_mass = 1.0 / cage->mass;
   const trb_vec3       g = trb_has_gravity(drive) ? trb_gravity_in(drive, 1.0, 0.0) : trb_v(0, 0, 0);
-  const trb_turn_rates turn = trb_euler(&c->frame, c->omega_frame, w, m->params.cage.inertia_transverse, m->params.cage.inertia_axial,
-                                        trb_to_frame(&c->frame, load->moment));
+  const trb_turn_rates turn =
+      trb_euler(&c->frame, c->omega_frame, w, cage->inertia_transverse, cage->inertia_axial, trb_to_frame(&c->frame, load->moment));
   rates[TRB_CAGE_x] = c->v.x + w * y[TRB_CAGE_y];
   rates[TRB_CAGE_y] = c->v.y - w * y[TRB_CAGE_x];
   rates[TRB_CAGE_psi] = c->omega_frame.z - turn.frame_a;
@@ -63,15 +63,15 @@ trb_rigid trb_cage_motion(const trb_rigid_pose *cage, int coordinate)
 
 double trb_cage_mass(const trb_model *m, const trb_body *body)
 {
-  (void)body;
-  return m->params.effects.with_cage > 0.0 ? m->params.cage.mass : 0.0;
+  const trb_cage_inputs *cage = body->own;
+  return m->params.effects.with_cage > 0.0 ? cage->mass : 0.0;
 }
 
 double trb_cage_kinetic(const trb_model *m, const trb_body *body, const trb_rigid_pose *c)
 {
-  (void)body;
+  const trb_cage_inputs *cage = body->own;
   if (m->params.effects.with_cage <= 0.0) return 0.0;
-  return trb_kinetic(m->params.cage.mass, m->params.cage.inertia_axial, m->params.cage.inertia_transverse, c->v, c->omega_frame);
+  return trb_kinetic(cage->mass, cage->inertia_axial, cage->inertia_transverse, c->v, c->omega_frame);
 }
 
 static const trb_coordinate coordinates[TRB_CAGE_SIZE] = {TRB_CAGE_STATE(TRB_COORDINATE)};
@@ -86,15 +86,17 @@ const trb_body_kind trb_body_cage = {.name = "rigid cage",
                                      .mass = trb_cage_mass,
                                      .kinetic = trb_cage_kinetic};
 
+static double spacer_inertia(const trb_body *body) { return ((const trb_cage_inputs *)body->own)->inertia_axial; }
+
 /* A spacer without its rollers; what they add is in motion/spacer.c. */
 static void spacer_rates(const trb_model *m, const trb_body *body, const trb_drive *drive, const trb_rigid_pose *pose, const double *y,
                          const trb_wrench *load, double *rates)
 {
-  (void)body;
+  (void)m;
   (void)y;
   memset(rates, 0, TRB_CAGE_SIZE * sizeof *rates);
   rates[TRB_CAGE_psi] = pose->omega_frame.z - drive->frame_speed;
-  rates[TRB_CAGE_omega_a] = load->moment.z / m->params.cage.inertia_axial - drive->frame_rate;
+  rates[TRB_CAGE_omega_a] = load->moment.z / spacer_inertia(body) - drive->frame_rate;
 }
 
 /* What guides it carries its weight. */
@@ -107,11 +109,9 @@ static double spacer_mass(const trb_model *m, const trb_body *body)
 
 static double spacer_kinetic(const trb_model *m, const trb_body *body, const trb_rigid_pose *pose)
 {
-  (void)body;
-  return 0.5 * m->params.cage.inertia_axial * pose->omega_frame.z * pose->omega_frame.z;
+  (void)m;
+  return 0.5 * spacer_inertia(body) * pose->omega_frame.z * pose->omega_frame.z;
 }
-
-static double spacer_inertia(const trb_model *m) { return m->params.cage.inertia_axial; }
 
 const trb_body_kind trb_body_spacer = {.name = "spacer",
                                        .size = TRB_CAGE_SIZE,

@@ -8,12 +8,13 @@
 static void between(const trb_model *m, const trb_pair *pair, const trb_instant *at, trb_counters *counters, trb_load *load,
                     trb_detail *detail)
 {
-  const trb_params     *p = &m->params;
-  const trb_rigid_pose *cage = &at->bodies[pair->a].pose;
-  const double          speed = trb_dot(cage->omega, cage->frame.a), viscosity = p->oil.viscosity / p->oil.density;
-  const double          density = p->effects.oil_fill * p->oil.density;
-  const double          per = trb_disc_over_speed(density, viscosity, p->cage.face_outer, fabs(speed)) -
-                              trb_disc_over_speed(density, viscosity, p->cage.face_inner, fabs(speed));
+  const trb_cage_inputs *faces = pair->own_a;
+  const trb_oil_inputs  *oil = pair->own;
+  const trb_rigid_pose  *cage = &at->bodies[pair->a].pose;
+  const double           speed = trb_dot(cage->omega, cage->frame.a), viscosity = oil->viscosity / oil->density;
+  const double           density = m->params.effects.oil_fill * oil->density;
+  const double           per = trb_disc_over_speed(density, viscosity, faces->face_outer, fabs(speed)) -
+                               trb_disc_over_speed(density, viscosity, faces->face_inner, fabs(speed));
   (void)detail;
   counters->drag_cages++;
   load->on_a.moment = trb_scale(-per * speed, cage->frame.a);

@@ -156,11 +156,12 @@ typedef struct trb_land_detail {
 typedef struct trb_detail {
   double         *lanes;               /* [lane field][race][roller][node of n_lanes]; or NULL: the contacts alone */
   trb_contact    *contacts;            /* [pair of the rollers with a ring, in their order][roller] */
-  double         *pocket_force;        /* [roller][slot], N */
-  double         *pocket_friction;     /* [roller][slot], N */
-  double         *pocket_interference; /* [roller][slot], largest; negative: smallest gap found, m; or NULL: forces alone */
+  double         *pocket_force;        /* [row of pockets][roller][slot], N */
+  double         *pocket_friction;     /* likewise, N */
+  double         *pocket_interference; /* likewise, largest; negative: smallest gap found, m; or NULL: forces alone */
   trb_land_detail land;
   int             n_contacts; /* such pairs */
+  int             n_slots;    /* of all rows of pockets together */
   trb_memory      memory;     /* of all arrays */
 } trb_detail;
 

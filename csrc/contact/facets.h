@@ -46,14 +46,14 @@ static inline double trb_flank_gap(const trb_model *m, const trb_pocket_face *f,
   double        gap = INFINITY, least[4] = {INFINITY, INFINITY, INFINITY, INFINITY};
   for (int end = 0; end < 2; end++) {
     const trb_sphere *last = &m->end_spheres[2 * roller + end];
-    gap = trb_min(gap, middle + last->place * along - last->radius - m->pocket_film);
+    gap = trb_min(gap, middle + last->place * along - last->radius - p->pockets->film);
   }
   if (gap > 0.0) return gap;
   /* side by side: one least value alone would wait for each comparison */
   int k = 0;
   for (; k + 4 <= m->n_nodes; k += 4)
-    for (int i = 0; i < 4; i++) least[i] = trb_min(least[i], middle + centre[k + i] * along - sphere[k + i] - m->pocket_film);
-  for (; k < m->n_nodes; k++) least[0] = trb_min(least[0], middle + centre[k] * along - sphere[k] - m->pocket_film);
+    for (int i = 0; i < 4; i++) least[i] = trb_min(least[i], middle + centre[k + i] * along - sphere[k + i] - p->pockets->film);
+  for (; k < m->n_nodes; k++) least[0] = trb_min(least[0], middle + centre[k] * along - sphere[k] - p->pockets->film);
   return trb_min(trb_min(least[0], least[1]), trb_min(least[2], least[3]));
 }
 
@@ -67,7 +67,7 @@ static inline double trb_flank_to_ball(const trb_model *m, const trb_pocket_face
   const double      slope = (end[1].radius - end[0].radius) / (end[1].place - end[0].place), s = trb_dot(to, p->a);
   const double      r = sqrt(trb_max(trb_dot(to, to) - s * s, 0.0)), low = trb_min(end[0].place, end[1].place);
   const double      place = trb_clamp(s + r * slope / sqrt(1.0 - slope * slope), low, trb_max(end[0].place, end[1].place));
-  return hypot(r, s - place) - (end[0].radius + slope * (place - end[0].place)) - f->extent - m->pocket_film;
+  return hypot(r, s - place) - (end[0].radius + slope * (place - end[0].place)) - f->extent - p->pockets->film;
 }
 
 /* The least gap between planes and two spheres with centres on an axis through a point, less a film's. */

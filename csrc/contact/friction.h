@@ -62,7 +62,4 @@ static inline trb_push trb_push_at(const trb_model *m, const trb_touch *touch, t
   return (trb_push){load, mu, drag, trb_axpy(trb_scale(-load, normal), -drag, touch->sliding)};
 }
 
-/* Its coefficient in pockets and at the land. */
-static inline double trb_cage_damping(const trb_model *m) { return m->params.effects.damping > 0.0 ? m->params.pocket.damping : 0.0; }
-
 #endif

@@ -13,6 +13,7 @@
 /* Both bodies, and what is summed. */
 typedef struct meeting {
   const trb_model      *m;
+  const trb_guided     *guided;
   const trb_rigid_pose *cage;
   trb_ring_pose         ring;   /* in R; centre: the point about which its moment is taken */
   int                   inside; /* 1: the cage runs inside the land */
@@ -25,7 +26,7 @@ typedef struct meeting {
 
 static trb_land_strip strip_at(const meeting *w, double station)
 {
-  return trb_land_strip_at(trb_axpy(w->cage->x, w->m->land_place + station, w->cage->frame.a), w->ring.centre, w->ring.axis);
+  return trb_land_strip_at(trb_axpy(w->cage->x, w->guided->place + station, w->cage->frame.a), w->ring.centre, w->ring.axis);
 }
 
 static trb_vec3 cage_velocity(const meeting *w, trb_vec3 at)
@@ -51,23 +52,24 @@ static void act(meeting *w, trb_vec3 at, trb_vec3 force, double couple, trb_mech
 }
 
 /* Largest distance of the axes of a strip at which nothing touches. */
-static double room(const trb_params *p) { return p->land.clearance - p->land.contact_film; }
+static double room(const trb_guided *guided) { return guided->given.clearance - guided->given.contact_film; }
 
 static void film_on_strip(meeting *w, double station, double width)
 {
-  const trb_params    *p = &w->m->params;
-  const trb_land_strip s = strip_at(w, station);
-  const double         c = p->land.clearance, held = s.size > room(p) ? room(p) / s.size : 1.0, half = 0.5 * p->land.fill * p->land.width;
-  const trb_vec3       at = trb_axpy(s.x, -0.5, s.apart), apart = trb_scale(held / c, s.apart);
-  const trb_vec3       relative = trb_sub(cage_velocity(w, at), ring_velocity(w, at));
-  const trb_vec3       v = trb_axpy(relative, -trb_dot(relative, w->ring.axis), w->ring.axis), around = trb_cross(w->ring.axis, v);
-  const double         speed = trb_norm(v), turning = trb_dot(trb_sub(w->ring.omega, w->cage->omega), w->ring.axis);
-  const double         shear = trb_journal_shear(p->oil.viscosity, w->radius, width, c, trb_norm(apart));
-  trb_vec3             force = {0, 0, 0};
+  const trb_land_inputs *land = &w->guided->given;
+  const double           viscosity = w->m->params.oil.viscosity;
+  const trb_land_strip   s = strip_at(w, station);
+  const double c = land->clearance, held = s.size > room(w->guided) ? room(w->guided) / s.size : 1.0, half = 0.5 * land->fill * land->width;
+  const trb_vec3 at = trb_axpy(s.x, -0.5, s.apart), apart = trb_scale(held / c, s.apart);
+  const trb_vec3 relative = trb_sub(cage_velocity(w, at), ring_velocity(w, at));
+  const trb_vec3 v = trb_axpy(relative, -trb_dot(relative, w->ring.axis), w->ring.axis), around = trb_cross(w->ring.axis, v);
+  const double   speed = trb_norm(v), turning = trb_dot(trb_sub(w->ring.omega, w->cage->omega), w->ring.axis);
+  const double   shear = trb_journal_shear(viscosity, w->radius, width, c, trb_norm(apart));
+  trb_vec3       force = {0, 0, 0};
   w->counters->land_films++;
   if (speed > 0.0) {
     const trb_journal_film film = trb_journal_short(trb_dot(apart, v) / speed, trb_dot(apart, around) / speed);
-    const double           scale = -6.0 * p->oil.viscosity * w->radius * width * (half * half - station * station) / (c * c * c);
+    const double           scale = -6.0 * viscosity * w->radius * width * (half * half - station * station) / (c * c * c);
     force = trb_axpy(trb_scale(scale * film.along, v), scale * film.across, around);
   }
   act(w, at, force, shear * turning, TRB_BY_FILM);
@@ -78,16 +80,15 @@ static void film_on_strip(meeting *w, double station, double width)
 static void contact_on_strip(meeting *w, double station, double width)
 {
   const trb_model     *m = w->m;
-  const trb_params    *p = &m->params;
   const trb_land_strip s = strip_at(w, station);
-  const double         d = s.size - room(p);
-  w->seen.gap = trb_min(w->seen.gap, p->land.clearance - s.size);
+  const double         d = s.size - room(w->guided);
+  w->seen.gap = trb_min(w->seen.gap, w->guided->given.clearance - s.size);
   if (!(d > 0.0)) return;
   w->counters->land_contacts++;
   const trb_vec3  normal = trb_scale(1.0 / s.size, s.apart), at = trb_land_nearest(&s, normal, w->radius, w->inside);
   const trb_touch touch = trb_touching(cage_velocity(w, at), ring_velocity(w, at), normal);
-  const double    elastic = m->land_palmgren * width * pow(d, TRB_PALMGREN_EXPONENT);
-  const trb_push  push = trb_push_at(m, &touch, normal, elastic, trb_cage_damping(m), 1.0, w->load->lost);
+  const double    elastic = w->guided->palmgren * width * pow(d, TRB_PALMGREN_EXPONENT);
+  const trb_push  push = trb_push_at(m, &touch, normal, elastic, w->guided->damping, 1.0, w->load->lost);
   act(w, at, push.force, 0.0, TRB_BY_SLIDING);
   w->load->elastic += TRB_PALMGREN_ENERGY * elastic * d;
   w->contact = trb_axpy(w->contact, -push.load, normal);
@@ -98,6 +99,7 @@ static meeting meeting_of(const trb_model *m, const trb_pair *pair, const trb_in
 {
   const trb_guide *guide = pair->own;
   return (meeting){.m = m,
+                   .guided = pair->own_a,
                    .cage = &at->bodies[pair->a].pose,
                    .ring = trb_body_in(&at->bodies[pair->b], at->drive->cosine, at->drive->sine),
                    .inside = guide->inside,
@@ -108,17 +110,17 @@ static meeting meeting_of(const trb_model *m, const trb_pair *pair, const trb_in
 static void meet(const trb_model *m, const trb_pair *pair, const trb_instant *at, trb_counters *counters, trb_load *load,
                  trb_detail *detail)
 {
-  const trb_params *p = &m->params;
+  const trb_guided *guided = pair->own_a;
   meeting           w = meeting_of(m, pair, at);
   w.counters = counters;
   w.load = load;
   for (int k = 0; k < TRB_LAND_STRIPS; k++) {
-    const double station = m->land_station[k], width = m->land_weight[k];
-    if (m->land_film) film_on_strip(&w, p->land.fill * station, p->land.fill * width);
+    const double station = guided->station[k], width = guided->weight[k];
+    if (guided->film) film_on_strip(&w, guided->given.fill * station, guided->given.fill * width);
     contact_on_strip(&w, station, width);
   }
   if (detail == NULL) return;
-  w.seen.eccentricity = strip_at(&w, 0.0).size / p->land.clearance;
+  w.seen.eccentricity = strip_at(&w, 0.0).size / guided->given.clearance;
   w.seen.film_force = trb_norm(w.film);
   w.seen.contact_force = trb_norm(w.contact);
   w.seen.force = trb_norm(trb_add(w.film, w.contact));
@@ -130,11 +132,11 @@ static void meet(const trb_model *m, const trb_pair *pair, const trb_instant *at
 static trb_approach approach_of(const trb_model *m, const trb_pair *pair, const trb_instant *at)
 {
   const meeting w = meeting_of(m, pair, at);
-  const double  stiffness = m->land_palmgren * m->params.land.width * pow(1e-6, TRB_PALMGREN_EXPONENT - 1.0);
-  trb_approach  found = {.left = INFINITY, .rise = sqrt(m->params.cage.mass / stiffness)};
+  const double  stiffness = w.guided->palmgren * w.guided->given.width * pow(1e-6, TRB_PALMGREN_EXPONENT - 1.0);
+  trb_approach  found = {.left = INFINITY, .rise = sqrt(w.guided->mass / stiffness)};
   for (int k = 0; k < TRB_LAND_STRIPS; k++) {
-    const trb_land_strip s = strip_at(&w, m->land_station[k]);
-    const double         left = room(&m->params) - s.size;
+    const trb_land_strip s = strip_at(&w, w.guided->station[k]);
+    const double         left = room(w.guided) - s.size;
     if (!(left < found.left)) continue;
     found.left = left;
     found.speed =

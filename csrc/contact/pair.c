@@ -77,11 +77,13 @@ static size_t lane_total(const trb_model *m) { return (size_t)TRB_N_LANE_FIELDS 
 
 trb_status trb_detail_create(const trb_model *m, const trb_pair *pairs, int n_pairs, trb_detail **detail, trb_message *message)
 {
-  const size_t rollers = (size_t)m->n_rollers, slots = rollers * (size_t)m->n_slots;
+  const size_t rollers = (size_t)m->n_rollers;
   trb_detail  *d = calloc(1, sizeof *d);
   *detail = NULL;
   if (d == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for contact details");
   for (int i = 0; i < n_pairs; i++) d->n_contacts += pairs[i].kind->contact != TRB_CONTACT_NONE;
+  for (int i = 0; i < n_pairs; i++) d->n_slots += pairs[i].kind->shape[1] == TRB_SHAPE_POCKETS ? m->n_rollers * m->n_slots : 0;
+  const size_t slots = (size_t)d->n_slots;
   d->lanes = trb_memory_zeros(&d->memory, lane_total(m), sizeof(double));
   d->contacts = trb_memory_zeros(&d->memory, (size_t)d->n_contacts * rollers, sizeof *d->contacts);
   d->pocket_force = trb_memory_zeros(&d->memory, slots, sizeof(double));
@@ -104,7 +106,7 @@ void trb_detail_free(trb_detail *detail)
 
 void trb_detail_clear(const trb_model *m, trb_detail *detail)
 {
-  const size_t rollers = (size_t)m->n_rollers, slots = rollers * (size_t)m->n_slots;
+  const size_t rollers = (size_t)m->n_rollers, slots = (size_t)detail->n_slots;
   if (detail->lanes != NULL) memset(detail->lanes, 0, lane_total(m) * sizeof(double));
   memset(detail->contacts, 0, (size_t)detail->n_contacts * rollers * sizeof *detail->contacts);
   memset(detail->pocket_force, 0, slots * sizeof(double));

@@ -77,15 +77,15 @@ typedef void trb_pair_between(const trb_model *m, const trb_pair *pair, const tr
 
 /* What a surface is, and what its shape points to. */
 typedef enum trb_shape {
-  TRB_SHAPE_NONE,     /* the whole body */
+  TRB_SHAPE_NONE,     /* the whole body: trb_cage_inputs of a cage, trb_oil_inputs of the oil */
   TRB_SHAPE_FLANK,    /* chain of spheres of the rollers (trb_model) */
   TRB_SHAPE_SPHERE,   /* end of the rollers: trb_sphere */
   TRB_SHAPE_PLANE,    /* end of the rollers: double, its place */
   TRB_SHAPE_RACE,     /* cone with the nodes of a contact line: trb_race_nodes */
   TRB_SHAPE_CONE,     /* bounded conical face: trb_rib */
   TRB_SHAPE_CIRCLES,  /* plane face between two circles: trb_circle[2] */
-  TRB_SHAPE_POCKETS,  /* lists of bounded faces (trb_model) */
-  TRB_SHAPE_CYLINDER, /* that the cage carries (trb_model) */
+  TRB_SHAPE_POCKETS,  /* lists of bounded faces: trb_pockets */
+  TRB_SHAPE_CYLINDER, /* that the cage carries: trb_guided */
   TRB_SHAPE_LAND      /* that guides it: trb_guide */
 } trb_shape;
 
@@ -96,7 +96,6 @@ typedef struct trb_pair_kind {
   const char        *name;
   trb_shape          shape[2];   /* of the surfaces that it joins */
   trb_pace           pace;       /* of pairs with a roller */
-  int                alone;      /* 1: a system has one row of it at most: records have room for one */
   int                seats;      /* 1: under load it holds a roller along the roller's axis */
   unsigned           mechanisms; /* by which it loses energy: TRB_LOSES of each */
   trb_contact_form   contact;    /* of a roller with a ring: it has a row of contacts in details */
@@ -114,9 +113,10 @@ typedef struct trb_pair_kind {
   double (*change)(const trb_model *m, const trb_pair *pair, double speed);
   /* of fast pairs */
   trb_pair_touch *touch;
-  int (*surfaces)(const trb_model *m, int roller);            /* that it tests for a roller; 0: they never touch */
-  void (*ways)(const trb_model *m, int roller, double *ways); /* [mode][gap]: longest way of what may touch, for a unit of amplitude, m/m */
-  double (*stiffness)(const trb_model *m, double depth);      /* load over interference at an interference, N/m */
+  int (*surfaces)(const trb_pair *pair, int roller); /* that it tests for a roller; 0: they never touch */
+  void (*ways)(const trb_model *m, const trb_pair *pair, const trb_modes *modes, int roller,
+               double *ways); /* [mode][gap]: longest way of what may touch, for a unit of amplitude, m/m */
+  double (*stiffness)(const trb_model *m, const trb_pair *pair, double depth); /* load over interference at an interference, N/m */
   /* of pairs without a roller, which have nothing of the others */
   trb_pair_between *between;
   trb_approach (*approach)(const trb_model *m, const trb_pair *pair, const trb_instant *at); /* NULL: they do not touch */
@@ -136,7 +136,9 @@ struct trb_pair {
   int                  a, b;       /* and of their bodies; a is TRB_ROLLERS where there is a roller */
   int                  on;         /* 0: an effect of the scene leaves it out, and nothing evaluates it */
   int                  contact;    /* number of its row of contacts in details */
-  const void          *own;        /* parameters, as its kind says */
+  int                  slots;      /* of pockets: where its forces begin in details */
+  const void          *own_a;      /* block of numbers of its first surface, as the shape says */
+  const void          *own;        /* and of its second one */
   trb_bookings         books;
 };
 

@@ -16,6 +16,7 @@
 /* Places seen from a face that has moved; then motions, too. Forces are sums over all faces. */
 static void see_places(const trb_pocket_view *p, const trb_face_shift *s, trb_pocket_view *seen)
 {
+  seen->pockets = p->pockets;
   seen->x = trb_point_from(s, p->x);
   seen->a = trb_seen_from(s, p->a);
 }
@@ -46,10 +47,10 @@ static void add_seen(const trb_pocket_view *seen, const trb_face_shift *s, const
 /* Exponent of the interference in a point contact's load. */
 #define TRB_POINT_EXPONENT 1.5
 
-static void view_places(const trb_model *m, const trb_roller_pose *r, const trb_rigid_pose *cage, int roller, trb_pocket_view *p)
+static void view_places(const trb_roller_pose *r, const trb_rigid_pose *cage, int roller, trb_pocket_view *p)
 {
-  const trb_frame in_r = trb_compose(&cage->body, &m->pocket_axes[roller]);
-  const trb_vec3  from_cage = trb_from_frame(&cage->body, m->pocket_origin[roller]);
+  const trb_frame in_r = trb_compose(&cage->body, &p->pockets->axes[roller]);
+  const trb_vec3  from_cage = trb_from_frame(&cage->body, p->pockets->origin[roller]);
   const trb_vec3  origin = trb_turn_z(trb_add(cage->x, from_cage), r->cosine, -r->sine);
   p->axes = (trb_frame){trb_turn_z(in_r.n, r->cosine, -r->sine), trb_turn_z(in_r.t, r->cosine, -r->sine),
                         trb_turn_z(in_r.a, r->cosine, -r->sine)};
@@ -70,11 +71,11 @@ static void view_motions(const trb_roller_pose *r, const trb_rigid_pose *cage, c
 
 /* d(-q n - q mu(v) s/v) for every motion: the load q follows interference and its rate, friction the load, and the sliding s of speed v. */
 static void add_slopes(const trb_model *m, const trb_pocket_touch *c, const trb_touch *touch, const trb_push *is, trb_vec3 arm,
-                       double factor, trb_slopes *slopes)
+                       double coefficient, double factor, trb_slopes *slopes)
 {
   const double   step = 1e-6 * touch->speed, more = m->pocket_friction ? factor * trb_sliding_coefficient(m, touch->speed + step) : 0.0;
   const double   bend = is->load * (more / (touch->speed + step) - is->mu / touch->speed) / (step * touch->speed);
-  const double   stiffness = c->exponent * is->load / c->interference, damping = is->load > 0.0 ? trb_cage_damping(m) * c->elastic : 0.0;
+  const double   stiffness = c->exponent * is->load / c->interference, damping = is->load > 0.0 ? coefficient * c->elastic : 0.0;
   const trb_vec3 load = trb_axpy(c->normal, is->mu / touch->speed, touch->sliding);
   const trb_vec3 units[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   for (int k = 0; k < 6; k++) {
@@ -94,7 +95,7 @@ static void push(const trb_model *m, const trb_pocket_face *f, trb_pocket_view *
 {
   const trb_vec3  arm = trb_sub(c->point, p->x);
   const trb_touch touch = trb_pocket_touching(p, c);
-  const trb_push  is = trb_push_at(m, &touch, c->normal, c->elastic, trb_cage_damping(m), f->friction_factor, load->lost);
+  const trb_push  is = trb_push_at(m, &touch, c->normal, c->elastic, p->pockets->damping, f->friction_factor, load->lost);
   p->force = trb_add(p->force, is.force);
   p->moment = trb_add(p->moment, trb_cross(arm, is.force));
   p->cage_force = trb_sub(p->cage_force, is.force);
@@ -103,15 +104,15 @@ static void push(const trb_model *m, const trb_pocket_face *f, trb_pocket_view *
   sums->force += is.load;
   sums->friction += is.load * is.mu;
   counters->pocket_nodes++;
-  if (p->slopes != NULL) add_slopes(m, c, &touch, &is, arm, f->friction_factor, p->slopes);
+  if (p->slopes != NULL) add_slopes(m, c, &touch, &is, arm, p->pockets->damping, f->friction_factor, p->slopes);
 }
 
 /* Interference of a sphere with a face, its centre h above the plane, and the normal from the centre to the nearest point. Without contact
  * it is the plane's, which is no less, unless it is wanted exactly. */
-static double sphere_on_face(const trb_model *m, const trb_pocket_face *f, trb_vec3 centre, double h, double radius, int exact,
+static double sphere_on_face(const trb_pockets *row, const trb_pocket_face *f, trb_vec3 centre, double h, double radius, int exact,
                              trb_vec3 *normal)
 {
-  if (m->params.pocket.edges <= 0.0 || (h >= radius && !exact)) return trb_sphere_on_plane(f->surface.normal, h, radius, normal);
+  if (row->given.edges <= 0.0 || (h >= radius && !exact)) return trb_sphere_on_plane(f->surface.normal, h, radius, normal);
   return trb_sphere_on_polygon(&f->surface, centre, h, radius, normal);
 }
 
@@ -121,7 +122,7 @@ static void flank_on_face(const trb_model *m, const trb_facets *near, trb_pocket
   const trb_pocket_face *f = near->first;
   const double *centre = m->centre + (size_t)roller * (size_t)m->n_lanes, *sphere = m->sphere + (size_t)roller * (size_t)m->n_lanes;
   const double *weight = m->race[TRB_RACE_OUTER].weight;
-  const double  middle = trb_polygon_height(&f->surface, p->x), along = trb_dot(p->a, f->surface.normal), reach = m->pocket_film;
+  const double  middle = trb_polygon_height(&f->surface, p->x), along = trb_dot(p->a, f->surface.normal), reach = p->pockets->film;
   double        least = -reach; /* interference up to which a node carries nothing */
   if (exact) least = -INFINITY;
   for (int k = 0; k < m->n_nodes; k++) {
@@ -132,14 +133,14 @@ static void flank_on_face(const trb_model *m, const trb_facets *near, trb_pocket
     double                 d;
     if (f->n_facets > 1) d = trb_facets_nearest(near, c, sphere[k], least, &facet, &normal);
     else if (h >= sphere[k] + reach && !exact) continue;
-    else d = sphere_on_face(m, f, c, h, sphere[k], exact || reach > 0.0, &normal);
+    else d = sphere_on_face(p->pockets, f, c, h, sphere[k], exact || reach > 0.0, &normal);
     sums->deepest = trb_max(sums->deepest, d);
     if (!(d > -reach)) continue;
     trb_pocket_touch touch = {
         trb_axpy(c, trb_sphere_reach(sphere[k], d), normal), normal, d, 0.0, TRB_PALMGREN_EXPONENT, trb_sub(c, p->x), 0};
     if (reach > 0.0) trb_pocket_push_film(m, p, &touch, sphere[k], weight[k], counters, load, sums);
     if (!(d > 0.0)) continue;
-    touch.elastic = m->pocket_palmgren * facet->stiffness_factor * weight[k] * pow(d, TRB_PALMGREN_EXPONENT);
+    touch.elastic = p->pockets->palmgren * facet->stiffness_factor * weight[k] * pow(d, TRB_PALMGREN_EXPONENT);
     push(m, facet, p, &touch, counters, load, sums);
   }
 }
@@ -159,10 +160,10 @@ static void large_end_on_face(const trb_model *m, const trb_facets *near, trb_po
   trb_vec3               normal;
   double                 d;
   if (f->n_facets > 1) d = trb_facets_nearest(near, c, g->sphere_radius, -INFINITY, &facet, &normal);
-  else d = sphere_on_face(m, f, c, trb_polygon_height(&f->surface, c), g->sphere_radius, exact, &normal);
+  else d = sphere_on_face(p->pockets, f, c, trb_polygon_height(&f->surface, c), g->sphere_radius, exact, &normal);
   sums->deepest = d;
   if (!(d > 0.0)) return;
-  const double           q = m->wall_stiffness * facet->stiffness_factor * d * sqrt(d);
+  const double           q = p->pockets->wall_stiffness * facet->stiffness_factor * d * sqrt(d);
   const trb_pocket_touch touch = {
       trb_axpy(c, trb_sphere_reach(g->sphere_radius, d), normal), normal, d, q, TRB_POINT_EXPONENT, trb_sub(c, p->x), 0};
   push(m, facet, p, &touch, counters, load, sums);
@@ -178,7 +179,7 @@ static void small_end_on_face(const trb_model *m, const trb_pocket_face *surface
   int            vertices = 0;
   for (int j = 0; j < surface->n_facets; j++) vertices += surface[j].surface.n;
   for (const trb_pocket_face *f = surface; f < surface + surface->n_facets; f++) {
-    const double stiffness = m->wall_stiffness * f->stiffness_factor / vertices;
+    const double stiffness = p->pockets->wall_stiffness * f->stiffness_factor / vertices;
     for (int i = 0; i < f->surface.n; i++) {
       const trb_vec3 point = trb_polygon_vertex(&f->surface, i);
       const double   d = trb_dot(trb_sub(point, end), p->a);
@@ -223,8 +224,8 @@ static double facets_gap(const trb_model *m, const trb_pocket_face *f, const trb
   const trb_vec3    point = is_flank ? p->x : end_sphere(m, p);
   double            gap = INFINITY;
   for (int j = 0; j < f->n_facets; j += TRB_PLANES_TOGETHER) {
-    const trb_planes *planes = &m->planes[f - m->faces + j / TRB_PLANES_TOGETHER];
-    const double      least = trb_spheres_to_planes(planes, point, p->a, spheres, is_flank ? m->pocket_film : 0.0);
+    const trb_planes *planes = &p->pockets->planes[f - p->pockets->faces + j / TRB_PLANES_TOGETHER];
+    const double      least = trb_spheres_to_planes(planes, point, p->a, spheres, is_flank ? p->pockets->film : 0.0);
     if (least > 0.0) {
       gap = trb_min(gap, least);
       continue;
@@ -261,9 +262,10 @@ static trb_pocket_sums face_forces(const trb_model *m, const trb_facets *near, t
   return sums;
 }
 
-static void add_detail(const trb_model *m, int roller, const trb_pocket_face *f, const trb_pocket_sums *sums, trb_detail *detail)
+static void add_detail(const trb_model *m, const trb_pair *pair, int roller, const trb_pocket_face *f, const trb_pocket_sums *sums,
+                       trb_detail *detail)
 {
-  const int slot = roller * m->n_slots + f->slot;
+  const int slot = pair->slots + roller * m->n_slots + f->slot;
   detail->pocket_force[slot] += sums->force;
   detail->pocket_friction[slot] += sums->friction;
   if (detail->pocket_interference == NULL) return;
@@ -290,7 +292,7 @@ static void look_at(const trb_model *m, const trb_pocket_face *f, const trb_pock
 {
   trb_pocket_view seen;
   if (deformed != NULL) {
-    trb_face_place(deformed, (int)(f - m->faces), &surface->shift);
+    trb_face_place(deformed, (int)(f - p->pockets->faces), &surface->shift);
     see_places(p, &surface->shift, &seen);
   }
   surface->gap = face_gap(m, f, deformed != NULL ? &seen : p, roller, list, &surface->facets);
@@ -322,17 +324,20 @@ static trb_pocket_sums forces_of(const trb_model *m, near_surface *surface, trb_
 }
 
 /* Compiled for a rigid cage and for one that deforms. */
-static inline trb_gaps touch(const trb_model *m, const trb_roller_pose *r, const trb_rigid_pose *cage, const trb_deformed *deformed,
-                             int roller, trb_counters *counters, trb_load *load, trb_slopes *slopes, trb_detail *detail)
+static inline trb_gaps touch(const trb_model *m, const trb_pair *pair, const trb_roller_pose *r, const trb_rigid_pose *cage,
+                             const trb_deformed *deformed, int roller, trb_counters *counters, trb_load *load, trb_slopes *slopes,
+                             trb_detail *detail)
 {
-  const trb_pocket_face *first = &m->faces[m->first_face[roller]], *end = &m->faces[m->first_face[roller + 1]];
+  const trb_pockets     *row = pair->own;
+  const trb_pocket_face *first = &row->faces[row->first_face[roller]], *end = &row->faces[row->first_face[roller + 1]];
   const trb_gaps         far = {{INFINITY, INFINITY}};
   const int              exact = detail != NULL && detail->pocket_interference != NULL;
   near_surface           surfaces[TRB_MOST_SLOTS], *last = surfaces;
   trb_near_facets        list;
   trb_pocket_view        p;
   trb_gaps               gaps = far;
-  view_places(m, r, cage, roller, &p);
+  p.pockets = row;
+  view_places(r, cage, roller, &p);
   counters->pocket_tests += end - first;
   list.n = 0;
   for (const trb_pocket_face *f = first; f < end; f += f->n_facets, last++) {
@@ -343,7 +348,7 @@ static inline trb_gaps touch(const trb_model *m, const trb_roller_pose *r, const
     counters->pocket_culled += end - first;
     return gaps;
   }
-  view_motions(r, cage, &m->pocket_origin[roller], &p);
+  view_motions(r, cage, &row->origin[roller], &p);
   memset(load, 0, sizeof *load);
   if (slopes != NULL) *slopes = (trb_slopes){.modal = slopes->modal, .axes = p.axes};
   p.slopes = slopes;
@@ -359,7 +364,7 @@ static inline trb_gaps touch(const trb_model *m, const trb_roller_pose *r, const
     if (exact) surface->facets.n = TRB_ALL_FACETS;
     const trb_pocket_sums sums = forces_of(m, surface, &p, deformed, roller, exact, counters, load);
     note_gap(&gaps, f, f->part == TRB_PART_FLANK ? gap : -sums.deepest);
-    if (detail != NULL) add_detail(m, roller, f, &sums, detail);
+    if (detail != NULL) add_detail(m, pair, roller, f, &sums, detail);
   }
   load->on_a.force = trb_from_frame(&p.axes, p.force);
   load->on_a.moment = trb_from_frame(&p.axes, p.moment);
@@ -373,8 +378,8 @@ trb_gaps trb_contact_pocket_of(const trb_model *m, const trb_pair *pair, const t
 {
   const trb_body_at     *cage = &at->bodies[pair->b];
   const trb_roller_pose *r = &at->rollers[roller];
-  if (cage->deformed == NULL) return touch(m, r, &cage->pose, NULL, roller, counters, load, slopes, detail);
-  return touch(m, r, &cage->pose, cage->deformed, roller, counters, load, slopes, detail);
+  if (cage->deformed == NULL) return touch(m, pair, r, &cage->pose, NULL, roller, counters, load, slopes, detail);
+  return touch(m, pair, r, &cage->pose, cage->deformed, roller, counters, load, slopes, detail);
 }
 
 void trb_contact_pocket(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,

@@ -34,11 +34,12 @@ typedef struct trb_bar_slice {
 } trb_bar_slice;
 
 /* The slope of the law's load is taken from a difference; that of its loss is twice the load. */
-static trb_bar_film film_on_bar(const trb_model *m, const trb_bar_slice *at, const trb_touch *touch, int with_slopes)
+static trb_bar_film film_on_bar(const trb_model *m, const trb_pocket_inputs *pocket, const trb_bar_slice *at, const trb_touch *touch,
+                                int with_slopes)
 {
   const trb_params *p = &m->params;
-  const double      least = p->pocket.roughness, h = trb_smooth_max(at->gap, least, least);
-  const double      x = trb_clamp(at->gap / p->pocket.film, 0.0, 1.0), share = 1.0 - x * x * (3.0 - 2.0 * x);
+  const double      least = pocket->roughness, h = trb_smooth_max(at->gap, least, least);
+  const double      x = trb_clamp(at->gap / pocket->film, 0.0, 1.0), share = 1.0 - x * x * (3.0 - 2.0 * x);
   const trb_vec3    across = trb_cross(at->axis, at->normal), e = trb_scale(1.0 / trb_norm(across), across);
   const double      drawn = trb_dot(e, trb_cross(at->turning, at->arm)) - 0.5 * trb_dot(e, touch->sliding);
   const double      u = sqrt(drawn * drawn + p->friction.speed_floor * p->friction.speed_floor), root = sqrt(2.0 * at->radius / h),
@@ -58,7 +59,7 @@ static trb_bar_film film_on_bar(const trb_model *m, const trb_bar_slice *at, con
   const trb_squeeze next = trb_squeeze_film(s + step);
   const double      rise = bit * (next.load - film.load), widens = bit * (next.shear - film.shear), bend = film.load - s * rise;
   const double      thinner = trb_clamp(at->gap / (2.0 * least), 0.0, 1.0) / h;
-  const double      more = 6.0 * x * (1.0 - x) / (p->pocket.film * trb_max(share, 1e-9)), way = drawn / u;
+  const double      more = 6.0 * x * (1.0 - x) / (pocket->film * trb_max(share, 1e-9)), way = drawn / u;
   f.by_depth.load = f.is.load * (more + thinner) + 0.5 * scale * s * rise * thinner;
   f.by_depth.pull = f.is.pull * (more + 0.5 * thinner) + 0.5 * flow * s * bend * thinner;
   f.by_depth.drag = f.is.drag * (more + 0.5 * thinner) + 0.5 * oil * root * widens * s * thinner;
@@ -114,7 +115,7 @@ void trb_pocket_push_film(const trb_model *m, trb_pocket_view *p, const trb_pock
                                .axis = p->a,
                                .arm = trb_sub(arm, c->carried),
                                .turning = trb_sub(p->omega, p->cage_omega)};
-  const trb_bar_film  film = film_on_bar(m, &slice, &touch, p->slopes != NULL);
+  const trb_bar_film  film = film_on_bar(m, &p->pockets->given, &slice, &touch, p->slopes != NULL);
   counters->pocket_films++;
   p->force = trb_add(p->force, film.force);
   p->moment = trb_add(p->moment, trb_add(trb_cross(arm, film.force), film.couple));

@@ -6,13 +6,14 @@
 
 /* Roller and cage in the frame of the pocket. Velocities and sums are filled only where they may touch. */
 typedef struct trb_pocket_view {
-  trb_frame axes;                         /* pocket axes, in the roller's cylindrical frame */
-  trb_vec3  x;                            /* roller's centre of mass, from the pocket's origin */
-  trb_vec3  a;                            /* roller's axis */
-  trb_vec3  cage;                         /* cage's centre of mass, from the pocket's origin */
-  trb_vec3  v, omega, cage_v, cage_omega; /* velocities of roller and cage, m/s and rad/s */
-  trb_vec3  force, moment;                /* on the roller, about its centre of mass */
-  trb_vec3  cage_force, cage_moment;      /* on the cage, about its centre of mass */
+  const trb_pockets *pockets;                      /* the row */
+  trb_frame          axes;                         /* pocket axes, in the roller's cylindrical frame */
+  trb_vec3           x;                            /* roller's centre of mass, from the pocket's origin */
+  trb_vec3           a;                            /* roller's axis */
+  trb_vec3           cage;                         /* cage's centre of mass, from the pocket's origin */
+  trb_vec3           v, omega, cage_v, cage_omega; /* velocities of roller and cage, m/s and rad/s */
+  trb_vec3           force, moment;                /* on the roller, about its centre of mass */
+  trb_vec3           cage_force, cage_moment;      /* on the cage, about its centre of mass */
 
   trb_slopes *slopes; /* or NULL */
 } trb_pocket_view;

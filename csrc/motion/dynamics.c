@@ -36,7 +36,7 @@ static void make_modes(trb_dynamics *d, trb_fast_pair *fast)
   fast->ways = trb_memory_zeros(&d->memory, rollers * n * TRB_N_GAPS, sizeof *fast->ways);
   fast->modal = trb_memory_zeros(&d->memory, rollers * n, sizeof *fast->modal);
   if (d->memory.lacks) return;
-  for (size_t j = 0; j < rollers; j++) fast->pair->kind->ways(d->model, (int)j, fast->ways + j * TRB_N_GAPS * n);
+  for (size_t j = 0; j < rollers; j++) fast->pair->kind->ways(d->model, fast->pair, body->modes, (int)j, fast->ways + j * TRB_N_GAPS * n);
   for (size_t i = 0; i < n; i++) {
     double per[2];
     fast->places[i] = body->first + body->kind->amplitude(body, (int)i, per);
@@ -53,7 +53,7 @@ static void make_fast(trb_dynamics *d, const trb_pair *pair, int row)
   fast->row = row;
   fast->surfaces = trb_memory_zeros(&d->memory, (size_t)n, sizeof *fast->surfaces);
   fast->bounds = trb_memory_zeros(&d->memory, (size_t)n, sizeof *fast->bounds);
-  for (int j = 0; j < n && !d->memory.lacks; j++) fast->surfaces[j] = pair->kind->surfaces(d->model, j);
+  for (int j = 0; j < n && !d->memory.lacks; j++) fast->surfaces[j] = pair->kind->surfaces(pair, j);
   pair->kind->arms(d->model, pair, fast->arms);
   if (d->system->bodies[pair->b].modes != NULL) make_modes(d, fast);
 }

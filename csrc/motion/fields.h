@@ -121,7 +121,7 @@ typedef enum trb_field_kind {
   S(X, land,     land,         cage,    0,                   "") \
   S(X, roller,   roller,       rollers, 0,                   "") \
   TRB_SHOWN_CONTACTS(C, X) \
-  S(X, pocket,   pocket,       pocket,  0,                   "") \
+  S(X, pocket,   pocket,       pocket,  TRB_PAIR_pocket,     "") \
   S(X, ring,     ring,         ring,    TRB_BODY_INNER_RING, "the inner ring") \
   S(X, ring,     housing,      housing, TRB_BODY_OUTER_RING, "the outer ring") \
   S(X, friction, inner_torque, torque,  TRB_BODY_INNER_RING, "friction torque that the shaft overcomes") \

@@ -198,8 +198,7 @@ static void look_at_fast(trb_peak_look *p, const double *y, double *values)
   const trb_model *m = &p->normal;
   trb_detail       forces = *p->detail;
   double          *to = of(p, TRB_PEAK_pocket_force, values);
-  memset(to, 0, (size_t)(m->n_rollers * m->n_slots) * sizeof *to);
-  forces.pocket_force = to;
+  memset(forces.pocket_force, 0, (size_t)forces.n_slots * sizeof *forces.pocket_force);
   forces.pocket_interference = NULL;
   for (int j = 0; j < m->n_rollers; j++) {
     const unsigned near = trb_fast_near(p->d, j, y);
@@ -210,6 +209,8 @@ static void look_at_fast(trb_peak_look *p, const double *y, double *values)
       if (near >> f & 1U) (void)trb_fast_touch(p->d, f, j, y, &load, NULL, &forces);
     }
   }
+  /* of the first row of pockets */
+  memcpy(to, forces.pocket_force, (size_t)(m->n_rollers * m->n_slots) * sizeof *to);
 }
 
 static void look_at_places(const trb_peak_look *p, const double *y, double *values)

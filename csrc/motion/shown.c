@@ -155,9 +155,10 @@ static void show_roller(const trb_seen *seen, double *const *to)
 
 static void show_pocket(const trb_seen *seen, double *const *to)
 {
+  const int    first = seen->d->system->pairs[seen->of].slots;
   const size_t size = (size_t)(seen->d->model->n_rollers * seen->d->model->n_slots) * sizeof(double);
-  memcpy(to[POCKET_force], seen->detail.pocket_force, size);
-  memcpy(to[POCKET_friction], seen->detail.pocket_friction, size);
+  memcpy(to[POCKET_force], seen->detail.pocket_force + first, size);
+  memcpy(to[POCKET_friction], seen->detail.pocket_friction + first, size);
 }
 
 /* A ring's displacement and motion in the roller-centre plane, and what rollers and cage do to it about that point. */

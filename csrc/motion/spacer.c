@@ -41,7 +41,7 @@ static double moment_of_mass(const trb_system *system, const trb_drive *drive, i
 
 double trb_spacer_inertia(const trb_system *system, const trb_drive *drive, const double *y)
 {
-  double inertia = body_of(system)->kind->spacing(system->model);
+  double inertia = body_of(system)->kind->spacing(body_of(system));
   for (int j = 0; j < system->model->n_rollers; j++) inertia += radius_of(system, j, y) * moment_of_mass(system, drive, j, y);
   return inertia;
 }
@@ -56,7 +56,7 @@ trb_spaced trb_spacer_part(const trb_system *system, const trb_drive *drive, int
 void trb_spacer_join(const trb_system *system, const trb_drive *drive, const double *y, double *rates)
 {
   const int    turning = trb_spacer_where(system).turning;
-  const double inertia = trb_spacer_inertia(system, drive, y), alone = body_of(system)->kind->spacing(system->model);
+  const double inertia = trb_spacer_inertia(system, drive, y), alone = body_of(system)->kind->spacing(body_of(system));
   const double rolling_rate = trb_pure_rolling(system->model, drive->rolling_rate, drive->carried_rate).v_t;
   double       sum = alone / inertia * (rates[turning] + drive->frame_rate);
   for (int j = 0; j < system->model->n_rollers; j++) {

@@ -52,7 +52,7 @@ static double rise_of(const trb_dynamics *d, const trb_pair *pair)
   const trb_model *m = d->model;
   const trb_body  *other = &d->system->bodies[pair->b];
   const double     roller = m->geometry.roller_mass, body = other->kind->mass(m, other);
-  return sqrt(roller * body / ((roller + body) * pair->kind->stiffness(m, trb_impact_interference)));
+  return sqrt(roller * body / ((roller + body) * pair->kind->stiffness(m, pair, trb_impact_interference)));
 }
 
 /* Where the bodies are that may be hit; those of the dynamics are at another instant. */

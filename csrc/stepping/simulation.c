@@ -219,7 +219,10 @@ trb_status trb_simulation_set_state(trb_simulation *s, double time, const double
 static int changes_speed(const trb_simulation *s)
 {
   int changes = trb_integrator_is_driven(&s->integrator);
-  for (int k = 0; k < s->assembly.n; k++) changes |= s->assembly.members[k].model->params.inner_ring.free > 1.0;
+  for (int k = 0; k < s->assembly.n; k++) {
+    const trb_body *driven = &s->assembly.members[k].bodies[s->assembly.members[k].driven];
+    changes |= driven->size > 0 && driven->own != NULL && !((const trb_ring_body *)driven->own)->keeps_speed;
+  }
   return changes;
 }
 

@@ -51,7 +51,7 @@ void trb_spacer_blocks(const trb_dynamics *d, const double *y, trb_arrow *arrow)
   const int           hub = trb_state_hub(system);
   const trb_spacer_at where = trb_spacer_where(system), at = {.turn = where.turn - hub, .turning = where.turning - hub};
   const double        inertia = trb_spacer_inertia(system, &d->drive, y);
-  const double        alone = system->bodies[system->spacer].kind->spacing(system->model) / inertia;
+  const double        alone = system->bodies[system->spacer].kind->spacing(&system->bodies[system->spacer]) / inertia;
   for (int c = 0; c < arrow->width; c++) arrow->hub[c * arrow->room + at.turning] *= alone;
   for (int j = 0; j < system->model->n_rollers; j++) {
     const int        leaf = system->layout.leaf + j;

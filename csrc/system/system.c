@@ -58,6 +58,7 @@ static trb_status join(const trb_system *s, trb_pair *pair, trb_message *message
   }
   pair->a = s->surfaces[pair->surface[0]].body;
   pair->b = s->surfaces[pair->surface[1]].body;
+  pair->own_a = s->surfaces[pair->surface[0]].is;
   pair->own = s->surfaces[pair->surface[1]].is;
   if (pair->kind->pace == TRB_PACE_FAST && (pair->b < 0 || s->bodies[pair->b].size == 0 || s->bodies[pair->b].kind->motion == NULL))
     return trb_fail(message, TRB_ERR_INPUT, "pair %s: a pair that comes and goes with impacts needs a body with coordinates", pair->name);
@@ -81,17 +82,6 @@ static trb_status check_contact(const trb_pair *pair, trb_message *message)
   return TRB_OK;
 }
 
-/* Pockets have one set of records and one set of faces in the model: a second row would act without being seen. */
-static trb_status check_alone(const trb_system *s, int row, trb_message *message)
-{
-  const trb_pair *pair = &s->pairs[row];
-  for (int i = 0; i < row && pair->kind->alone; i++)
-    if (s->pairs[i].on && s->pairs[i].kind->alone)
-      return trb_fail(message, TRB_ERR_INPUT, "pair %s: a system has one pair of the kind '%s' at most, and has pair %s", pair->name,
-                      pair->kind->name, s->pairs[i].name);
-  return TRB_OK;
-}
-
 /* Where a roller's part of the right-hand side has no room for a loss, the loss would be dropped. */
 static trb_status check_books(const trb_system *s, const trb_pair *pair, trb_message *message)
 {
@@ -108,7 +98,7 @@ static trb_status check_books(const trb_system *s, const trb_pair *pair, trb_mes
 
 trb_status trb_system_finish(trb_system *s, trb_message *message)
 {
-  int contacts = 0, n_rollers = s->model->n_rollers;
+  int contacts = 0, slots = 0, n_rollers = s->model->n_rollers;
   s->n_moving = 0;
   s->spacer = -1;
   s->layout = (trb_layout){.n_rollers = n_rollers, .hub = n_rollers * TRB_ROLLER_SIZE};
@@ -134,10 +124,11 @@ trb_status trb_system_finish(trb_system *s, trb_message *message)
     trb_status status = join(s, pair, message);
     if (status == TRB_OK) status = check_contact(pair, message);
     if (status == TRB_OK && pair->on) status = check_books(s, pair, message);
-    if (status == TRB_OK && pair->on) status = check_alone(s, i, message);
     if (status != TRB_OK) return status;
     pair->contact = contacts;
     contacts += pair->kind->contact != TRB_CONTACT_NONE;
+    pair->slots = slots;
+    slots += pair->kind->shape[1] == TRB_SHAPE_POCKETS ? n_rollers * s->model->n_slots : 0;
   }
   s->layout.spin = trb_state_main_size(s);
   s->layout.quadrature = s->layout.spin + n_rollers;

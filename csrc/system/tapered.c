@@ -53,9 +53,10 @@ static void add_bodies(trb_system *s)
                                                 .loss = TRB_BOOK(TRB_LOSS_support),
                                                 .carried = s->model->params.inner_ring.carried > 0.0};
   const trb_body_kind *cage = s->model->params.effects.with_cage > 1.0 ? &trb_body_spacer : &trb_body_cage;
-  s->bodies[TRB_BODY_CAGE] = (trb_body){.kind = cage, .name = "cage"};
+  s->bodies[TRB_BODY_CAGE] = (trb_body){.kind = cage, .name = "cage", .own = &s->model->params.cage};
   if (s->model->modes.n > 0) {
     s->bodies[TRB_BODY_CAGE] = trb_elastic_cage_of(&s->model->modes, "cage");
+    s->bodies[TRB_BODY_CAGE].own = &s->model->params.cage;
     s->bodies[TRB_BODY_CAGE].loss = TRB_BOOK(TRB_LOSS_vibration);
   }
   s->bodies[TRB_BODY_OIL] = (trb_body){.kind = &trb_fluid_at_rest, .name = "oil"};
@@ -73,12 +74,12 @@ static void add_surfaces(trb_system *s)
   s->surfaces[INNER_RACE] = (trb_surface){"inner raceway", TRB_BODY_INNER_RING, TRB_SHAPE_RACE, &m->race[TRB_RACE_INNER]};
   s->surfaces[BACK_FACE] = (trb_surface){"back-face rib", TRB_BODY_INNER_RING, TRB_SHAPE_CONE, &m->rib[TRB_RACE_INNER][TRB_END_LARGE]};
   s->surfaces[FRONT_FACE] = (trb_surface){"front rib", TRB_BODY_INNER_RING, TRB_SHAPE_CIRCLES, m->surfaces.front_rib};
-  s->surfaces[OIL] = (trb_surface){"mixture of oil and air", TRB_BODY_OIL, TRB_SHAPE_NONE, NULL};
-  s->surfaces[POCKETS] = (trb_surface){"pockets", TRB_BODY_CAGE, TRB_SHAPE_POCKETS, m};
-  s->surfaces[GUIDED] = (trb_surface){"guiding surface", TRB_BODY_CAGE, TRB_SHAPE_CYLINDER, m};
+  s->surfaces[OIL] = (trb_surface){"mixture of oil and air", TRB_BODY_OIL, TRB_SHAPE_NONE, &m->params.oil};
+  s->surfaces[POCKETS] = (trb_surface){"pockets", TRB_BODY_CAGE, TRB_SHAPE_POCKETS, &m->pockets};
+  s->surfaces[GUIDED] = (trb_surface){"guiding surface", TRB_BODY_CAGE, TRB_SHAPE_CYLINDER, &m->guided};
   s->surfaces[INNER_LAND] = (trb_surface){"land of the inner ring", TRB_BODY_INNER_RING, TRB_SHAPE_LAND, &m->guide[TRB_RACE_INNER]};
   s->surfaces[OUTER_LAND] = (trb_surface){"land of the outer ring", TRB_BODY_OUTER_RING, TRB_SHAPE_LAND, &m->guide[TRB_RACE_OUTER]};
-  s->surfaces[WHOLE_CAGE] = (trb_surface){"cage", TRB_BODY_CAGE, TRB_SHAPE_NONE, NULL};
+  s->surfaces[WHOLE_CAGE] = (trb_surface){"cage", TRB_BODY_CAGE, TRB_SHAPE_NONE, &m->params.cage};
   if (!trb_has_cylinders(m)) return;
   s->surfaces[FRONT_FACE] = (trb_surface){"front rib", TRB_BODY_INNER_RING, TRB_SHAPE_CONE, &m->rib[TRB_RACE_INNER][TRB_END_SMALL]};
   s->surfaces[OTHER_END] = (trb_surface){"sphere of the small end", TRB_ROLLERS, TRB_SHAPE_SPHERE, &m->surfaces.end[TRB_END_SMALL]};
@@ -162,7 +163,7 @@ static int is_on(const trb_model *m, int pair)
   case TRB_PAIR_outer_rib: return p->rib.outer > 0.0;
   case TRB_PAIR_outer_front_rib: return p->rib.outer_front > 0.0;
   case TRB_PAIR_drag: return p->effects.oil_fill > 0.0 && p->effects.drag_coefficient > 0.0;
-  case TRB_PAIR_pocket: return m->first_face[m->n_rollers] > 0;
+  case TRB_PAIR_pocket: return m->pockets.first_face[m->n_rollers] > 0;
   case TRB_PAIR_inner_land: return trb_has_cage(m) && p->effects.guidance == TRB_GUIDANCE_INNER_LAND;
   case TRB_PAIR_outer_land: return trb_has_cage(m) && p->effects.guidance == TRB_GUIDANCE_OUTER_LAND;
   case TRB_PAIR_cage_drag: return p->effects.with_cage > 0.0 && p->effects.oil_fill > 0.0 && p->cage.face_outer > p->cage.face_inner;
@@ -185,7 +186,7 @@ static void add_pairs(trb_system *s)
     s->pairs[TRB_PAIR_front_rib].kind = &trb_pair_rib;
     s->pairs[TRB_PAIR_front_rib].surface[0] = OTHER_END;
   }
-  if (!(s->model->pocket_film > 0.0)) return;
+  if (!(s->model->pockets.film > 0.0)) return;
   s->pairs[TRB_PAIR_pocket].kind = &trb_pair_pocket_with_film;
   s->pairs[TRB_PAIR_pocket].books.loss[TRB_BY_FILM] = TRB_BOOK(TRB_LOSS_pocket_film);
 }

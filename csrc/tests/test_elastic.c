@@ -192,10 +192,10 @@ static void test_ways(void)
   const trb_modes *modes = &m->modes;
   double           ways[4 * TRB_N_GAPS];
   for (int j = 0; j < m->n_rollers; j++) {
-    trb_pair_pocket.ways(m, j, ways);
-    for (int f = m->first_face[j]; f < m->first_face[j + 1]; f++) {
-      const trb_polygon *face = &m->faces[f].surface;
-      const int          gap = m->faces[f].part == TRB_PART_FLANK ? TRB_GAP_FLANK : TRB_GAP_ENDS;
+    trb_pair_pocket.ways(m, &system->pairs[TRB_PAIR_pocket], modes, j, ways);
+    for (int f = m->pockets.first_face[j]; f < m->pockets.first_face[j + 1]; f++) {
+      const trb_polygon *face = &m->pockets.faces[f].surface;
+      const int          gap = m->pockets.faces[f].part == TRB_PART_FLANK ? TRB_GAP_FLANK : TRB_GAP_ENDS;
       const double      *shape = trb_shapes_of(modes, f);
       for (int i = 0; i < modes->n; i++, shape += TRB_SHAPE_ROOM)
         for (int k = 0; k < face->n; k++) {
@@ -206,9 +206,10 @@ static void test_ways(void)
     }
   }
   /* bars that do not move have no way, and walls have theirs as before */
-  for (int f = m->first_face[0]; f < m->first_face[1]; f++)
-    for (int i = 0; i < modes->n * TRB_SHAPE_ROOM && m->faces[f].part == TRB_PART_FLANK; i++) ((double *)trb_shapes_of(modes, f))[i] = 0.0;
-  trb_pair_pocket.ways(m, 0, ways);
+  for (int f = m->pockets.first_face[0]; f < m->pockets.first_face[1]; f++)
+    for (int i = 0; i < modes->n * TRB_SHAPE_ROOM && m->pockets.faces[f].part == TRB_PART_FLANK; i++)
+      ((double *)trb_shapes_of(modes, f))[i] = 0.0;
+  trb_pair_pocket.ways(m, &system->pairs[TRB_PAIR_pocket], modes, 0, ways);
   for (int i = 0; i < modes->n; i++) CHECK(ways[i * TRB_N_GAPS + TRB_GAP_FLANK] == 0.0 && ways[i * TRB_N_GAPS + TRB_GAP_ENDS] > 0.0);
   rig_free(system);
 }

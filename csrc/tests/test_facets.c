@@ -100,13 +100,13 @@ static got pocket_of(const trb_model *m, const trb_pair *row, const trb_instant 
 static double deepest_of(const trb_model *m, const trb_instant *at, const trb_rigid_pose *cage, int roller, int slot)
 {
   const trb_roller_pose *r = &at->rollers[roller];
-  const trb_frame        body = trb_compose(&cage->body, &m->pocket_axes[roller]);
-  const trb_vec3         origin = trb_add(cage->x, trb_from_frame(&cage->body, m->pocket_origin[roller]));
+  const trb_frame        body = trb_compose(&cage->body, &m->pockets.axes[roller]);
+  const trb_vec3         origin = trb_add(cage->x, trb_from_frame(&cage->body, m->pockets.origin[roller]));
   const trb_vec3         from = trb_sub(trb_turn_z(r->x, r->cosine, r->sine), origin), axis = trb_turn_z(r->frame.a, r->cosine, r->sine);
   const trb_vec3         x = trb_to_frame(&body, from), a = trb_to_frame(&body, axis);
   double                 deepest = -INFINITY;
-  for (int f = m->first_face[roller]; f < m->first_face[roller + 1]; f++) {
-    const trb_pocket_face *face = &m->faces[f];
+  for (int f = m->pockets.first_face[roller]; f < m->pockets.first_face[roller + 1]; f++) {
+    const trb_pocket_face *face = &m->pockets.faces[f];
     const int              flank = face->part == TRB_PART_FLANK;
     if (face->slot != slot) continue;
     for (int k = 0; k < (flank ? m->n_nodes : 1); k++) {
@@ -152,7 +152,7 @@ static void compare(const rig_bench *b, const trb_instant *at, const trb_pair *r
     const double deepest = deepest_of(m, at, cage, roller, slot), size = fmax(fabs(deepest), m->geometry.sphere_radius);
     CHECK_NEAR(depth[roller * m->n_slots + slot], deepest, 1e-13 * size);
     const int gap = slot < 2 ? TRB_GAP_FLANK : TRB_GAP_ENDS;
-    nearest[gap] = fmin(nearest[gap], -deepest - (slot < 2 ? m->pocket_film : 0.0));
+    nearest[gap] = fmin(nearest[gap], -deepest - (slot < 2 ? m->pockets.film : 0.0));
   }
   for (int g = 0; g < TRB_N_GAPS; g++) CHECK(few.gaps.of[g] <= nearest[g] + 1e-13);
 }

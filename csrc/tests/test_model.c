@@ -33,12 +33,12 @@ static void test_contents(void)
   const trb_params p = rig_params();
   trb_model       *m = rig_model(&p);
   CHECK(m->n_rollers == 12 && m->n_nodes == RIG_SLICES && m->n_lanes == RIG_SLICES && m->n_slots == 4);
-  CHECK(m->first_face[0] == 0 && m->first_face[12] == 48 && m->first_face[5] == 20);
+  CHECK(m->pockets.first_face[0] == 0 && m->pockets.first_face[12] == 48 && m->pockets.first_face[5] == 20);
   CHECK(m->friction && m->film && m->pocket_friction);
   trb_params odd = p;
   odd.effects.n_slices = 5, odd.pocket.bars = 0;
   trb_model *n = rig_model(&odd);
-  CHECK(n->n_nodes == 5 && n->n_lanes == TRB_LANE_PAD && n->first_face[12] == 24);
+  CHECK(n->n_nodes == 5 && n->n_lanes == TRB_LANE_PAD && n->pockets.first_face[12] == 24);
   for (int race = 0; race < TRB_N_RACES; race++) {
     double sum = 0.0;
     for (int k = 0; k < n->n_lanes; k++) {
@@ -204,7 +204,7 @@ static void test_faces_of_single_pockets(void)
   CHECK(trb_model_create(&p, deviation, 12, faces, RIG_FACES, &m, NULL) == TRB_OK);
   if (m == NULL) return;
   CHECK(m->n_slots == 10);
-  for (int j = 0; j < 12; j++) CHECK(m->first_face[j + 1] - m->first_face[j] == (j == 3 || j == 11 ? 3 : 2));
+  for (int j = 0; j < 12; j++) CHECK(m->pockets.first_face[j + 1] - m->pockets.first_face[j] == (j == 3 || j == 11 ? 3 : 2));
   trb_model_free(m);
 }
 

@@ -12,8 +12,9 @@ enum { MOST_MASSES = 3, ROOM = 600, MOST = 12 * TRB_NR + TRB_CAGE_SIZE + 2 * MOS
 
 /* A body's own parameters. The coordinates are stretches of the springs, then inertial velocities of the masses. */
 typedef struct springs {
-  int    n;
-  double mass, stiffness[MOST_MASSES], damping;
+  trb_cage_inputs cage; /* what the functions of a rigid cage read comes first */
+  int             n;
+  double          mass, stiffness[MOST_MASSES], damping;
 } springs;
 
 static double pull(const springs *s, const double *y, int k)
@@ -91,7 +92,10 @@ static void put_masses(trb_system *system, const springs *s)
   CHECK(trb_system_finish(system, NULL) == TRB_OK);
 }
 
-static springs springs_of(int n) { return (springs){.n = n, .mass = 0.02, .stiffness = {4e4, 9e4, 2.5e5}, .damping = 1.5}; }
+static springs springs_of(int n)
+{
+  return (springs){.cage = rig_params().cage, .n = n, .mass = 0.02, .stiffness = {4e4, 9e4, 2.5e5}, .damping = 1.5};
+}
 
 static unsigned long long seed = 41;
 

@@ -121,9 +121,9 @@ static void test_arms_of_pockets(const trb_system *system)
   const trb_model *m = system->model;
   trb_arms         arms[TRB_N_GAPS];
   trb_pair_pocket.arms(m, &system->pairs[TRB_PAIR_pocket], arms);
-  for (int i = 0; i < m->first_face[m->n_rollers]; i++) {
-    const trb_polygon *f = &m->faces[i].surface;
-    const int          gap = m->faces[i].part == TRB_PART_FLANK ? TRB_GAP_FLANK : TRB_GAP_ENDS;
+  for (int i = 0; i < m->pockets.first_face[m->n_rollers]; i++) {
+    const trb_polygon *f = &m->pockets.faces[i].surface;
+    const int          gap = m->pockets.faces[i].part == TRB_PART_FLANK ? TRB_GAP_FLANK : TRB_GAP_ENDS;
     for (int k = 0; k < f->n; k++) {
       const trb_vec3 vertex = trb_axpy(trb_axpy(f->origin, f->outline[2 * k], f->u), f->outline[2 * k + 1], f->v);
       CHECK(arms[gap].roller[TRB_ROLLER_skew] >= trb_norm(vertex) && arms[gap].roller[TRB_ROLLER_tilt] >= trb_norm(vertex));
@@ -141,7 +141,7 @@ static void test_lean(void)
     trb_params p = rig_params();
     p.cage.offset = 5e-3 * (k - 1);
     trb_model *m = rig_model(&p);
-    trb_pair_pocket.arms(m, NULL, arms);
+    trb_pair_pocket.arms(m, &(trb_pair){.own = &m->pockets}, arms);
     for (int g = 0; g < TRB_N_GAPS; g++) {
       CHECK(arms[g].body[TRB_CAGE_skew] == arms[g].body[TRB_CAGE_tilt]);
       lean[k][g] = arms[g].body[TRB_CAGE_skew];
