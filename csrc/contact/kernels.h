@@ -67,6 +67,25 @@ static inline const double *trb_detail_lane(const trb_model *m, const trb_detail
 
 typedef struct trb_uneven trb_uneven;
 
+/* Of each node, what its laws gave where they were kept, and their slopes over logarithms: _d of the interference, _end of that which stands for the length
+ * that rolls, _u of the mean speed, _s of the sliding speed (contact/law_slopes.h). Rolling resistance is per length; per_: one over it; film_ratio: elastic over rigid. */
+#define TRB_LAW_SLOPES(X) \
+  X(interference) X(per_mean_speed) X(per_sliding_speed) X(log_d) X(load) X(friction) X(friction_d) X(friction_u) X(friction_s) X(film_ratio) X(rolled_log_d) X(rolling) \
+  X(rolling_d) X(rolling_end) X(rolling_u) X(rolling_s)
+
+enum {
+#define TRB_LAW_ENUM(name) TRB_LAW_##name,
+  TRB_LAW_SLOPES(TRB_LAW_ENUM)
+#undef TRB_LAW_ENUM
+      TRB_N_LAW_SLOPES
+};
+
+/* Of one contact. */
+typedef struct trb_law_slopes {
+  int     loaded; /* whether it carried a load */
+  double *nodes;  /* [field][lane] */
+} trb_law_slopes;
+
 /* One contact of a roller with a race. Without interference it uses no lanes: the next contact gets them. */
 typedef struct trb_race_input {
   const trb_roller_pose *roller;
@@ -77,6 +96,8 @@ typedef struct trb_race_input {
   const trb_race_nodes  *nodes;
   const trb_uneven      *uneven; /* NULL: both surfaces have their true form there */
   int                    lane;   /* the first of its lanes in `uneven` */
+  trb_law_slopes        *laws;   /* where slopes of its laws are kept; NULL: nowhere */
+  int                    linear; /* 1: its laws are followed along them */
 } trb_race_input;
 
 typedef struct trb_race_output {

@@ -41,16 +41,24 @@ struct trb_lanes;
 struct trb_uneven;
 
 /* Scratch of one thread, and the pairs that are on. */
+/* What an evaluation of raceways does with slopes of their laws. */
+typedef enum trb_laws_use { TRB_LAWS_EXACT, TRB_LAWS_KEPT, TRB_LAWS_FOLLOWED } trb_laws_use;
+
 typedef struct trb_workspace {
-  struct trb_lanes  *lanes;                   /* scratch of the raceway kernel */
-  struct trb_uneven *uneven;                  /* and of surfaces off their true form; NULL: the bearing has none */
-  int                variant;                 /* kernel variant, index into trb_kernel_variants */
-  trb_batch          batches[TRB_MOST_PAIRS]; /* pairs with a roller that are on */
-  int                n_batches;
-  trb_batch          hub[TRB_MOST_PAIRS]; /* pairs without a roller that are on, each for itself */
-  int                n_hub;
-  trb_counters       counters; /* of this workspace */
+  struct trb_lanes      *lanes;                   /* scratch of the raceway kernel */
+  struct trb_uneven     *uneven;                  /* and of surfaces off their true form; NULL: the bearing has none */
+  struct trb_law_slopes *laws;                    /* of every roller's raceways: slopes of their laws; NULL: they are not kept */
+  trb_laws_use           laws_use;                /* of `laws`, where there are any */
+  int                    variant;                 /* kernel variant, index into trb_kernel_variants */
+  trb_batch              batches[TRB_MOST_PAIRS]; /* pairs with a roller that are on */
+  int                    n_batches;
+  trb_batch              hub[TRB_MOST_PAIRS]; /* pairs without a roller that are on, each for itself */
+  int                    n_hub;
+  trb_counters           counters; /* of this workspace */
 } trb_workspace;
+
+/* Makes the workspace keep slopes of the laws of all raceway contacts, in this memory, where the scene's laws have them. */
+void trb_law_slopes_create(const trb_model *m, trb_memory *memory, trb_workspace *work);
 
 /* The pairs of a batch, all chosen rollers at once; added to the loads. detail may be NULL. */
 typedef void trb_pair_evaluate(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,

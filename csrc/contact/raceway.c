@@ -19,6 +19,11 @@ static trb_race_input race_input(const trb_model *m, const trb_instant *at, int 
                        .centre = m->centre + (size_t)roller * (size_t)m->n_lanes,
                        .sphere = m->sphere + (size_t)roller * (size_t)m->n_lanes,
                        .nodes = nodes_of(pair)};
+  if (work->laws != NULL && work->laws_use != TRB_LAWS_EXACT) {
+    in.laws = &work->laws[roller * TRB_N_RACES + in.nodes->race];
+    in.linear = work->laws_use == TRB_LAWS_FOLLOWED;
+    if (!in.linear) in.laws->loaded = 0;
+  }
   if (at->spin == NULL) return in;
   const double azimuth = at->drive->frame_angle + at->rollers[roller].angle, spin = at->spin[roller];
   if (!trb_uneven_is_near(m, in.nodes->race, roller, azimuth, in.ring->angle, spin)) return in;
@@ -27,6 +32,22 @@ static trb_race_input race_input(const trb_model *m, const trb_instant *at, int 
   in.uneven = work->uneven;
   in.lane = first;
   return in;
+}
+
+/* Not with laws that join the nodes of a contact, as the load of the whole contact and gaps beside it, and not with hysteresis, which is no part of what
+ * rolls: slopes are then differences of the whole evaluation. */
+static int has_law_slopes(const trb_model *m)
+{
+  return !(m->params.effects.rolling_load > 0.0 || m->params.effects.flooded_gaps > 0.0 || m->params.effects.hysteresis > 0.0);
+}
+
+void trb_law_slopes_create(const trb_model *m, trb_memory *memory, trb_workspace *work)
+{
+  const size_t contacts = (size_t)(TRB_N_RACES * m->n_rollers), each = (size_t)(TRB_N_LAW_SLOPES * m->n_lanes);
+  if (!has_law_slopes(m)) return;
+  work->laws = trb_memory_zeros(memory, contacts, sizeof *work->laws);
+  double *nodes = trb_memory_zeros(memory, contacts * each, sizeof *nodes);
+  for (size_t i = 0; i < contacts && !memory->lacks; i++) work->laws[i].nodes = nodes + i * each;
 }
 
 static int is_uneven(const trb_model *m, const trb_pair *pair, int roller, double azimuth, double turned, double spin)

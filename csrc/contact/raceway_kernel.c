@@ -103,8 +103,9 @@ static void pass_film(const trb_model *m, int n, trb_lanes *l)
   }
 }
 
-/* h_PE/h_IR goes with this power of the interference. */
+/* h_PE/h_IR goes with these powers of the interference and of the mean speed. */
 #define TRB_FILM_RATIO_EXPONENT ((1.0 - TRB_FILM_LINE_LOAD) * TRB_PALMGREN_EXPONENT)
+#define TRB_FILM_RATIO_SPEED (TRB_FILM_LINE_SPEED - 1.0)
 
 /* Interference from which on a contact has rolling resistance, m. The powers set in with h_PE/h_IR, the other law with the load. */
 static double rolling_level(const trb_model *m, int first, const trb_lanes *l)
@@ -215,6 +216,19 @@ static void pass_supplied(int n, trb_lanes *l)
 {
   TRB_PADDED(n);
   TRB_LANES for (int i = 0; i < n; i++) l->rolling[i] *= trb_rolling_supplied(l->supplied[i], l->thermal_factor[i]);
+}
+
+/* All of this over the lengths that roll. */
+static void pass_rollings(const trb_model *m, int n, trb_lanes *l, trb_counters *counters)
+{
+  const int is_starved = m->params.effects.starvation_factor < 1.0 || m->replenishment > 0.0 || m->params.effects.oil_height > 0.0;
+  pass_rolling(m, n, l);
+  if (is_starved || m->params.effects.flooded_gaps > 0.0) pass_supply(m, n, l);
+  if (m->params.effects.oil_height > 0.0) {
+    pass_meniscus(m, n, l);
+    counters->meniscus_nodes += n;
+  }
+  if (is_starved) pass_supplied(n, l);
 }
 
 /* Beside the part that carries, the gap is that of the undeformed surfaces and the film of the deepest node. A contact that begins to
@@ -370,6 +384,8 @@ static void sum_outputs(const trb_model *m, const trb_race_input *inputs, const 
   }
 }
 
+#include "contact/law_slopes.h"
+
 void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inputs, trb_lanes *l, trb_counters *counters,
                      trb_race_output *outputs)
 {
@@ -380,7 +396,7 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inp
     /* a contact without interference leaves its lanes to the next */
     outputs[c].depth = pass_geometry(&inputs[c], n, l, n_loaded * n);
     if (inputs[c].uneven != NULL) outputs[c].depth = pass_uneven(&inputs[c], n, l, n_loaded * n);
-    if (outputs[c].depth > 0.0) loaded[n_loaded++] = c;
+    if (carries(&inputs[c], outputs[c].depth)) loaded[n_loaded++] = c;
     else counters->raceway_culled++;
   }
   const int           all = n_loaded * n;
@@ -390,6 +406,11 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inp
                               .asperity_factor = m->params.friction.asperity_factor,
                               .asperity_exponent = m->params.friction.asperity_exponent};
   if (all == 0) return;
+  if (inputs[0].laws != NULL && inputs[0].linear) {
+    follow_laws(m, inputs, loaded, n_loaded, rolling, l, outputs);
+    sum_outputs(m, inputs, loaded, n_loaded, rolling, l, counters, outputs);
+    return;
+  }
   counters->raceway_nodes += all;
   pass_load(m, all, l);
   for (int c = 0; c < n_loaded; c++) {
@@ -405,14 +426,7 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inp
   pass_oil(m, &kind, all, l, counters);
   if (rolling) {
     for (int c = 0; c < n_loaded; c++) pass_rolled(m, c * n, l);
-    pass_rolling(m, all, l);
-    const int is_starved = m->params.effects.starvation_factor < 1.0 || m->replenishment > 0.0 || m->params.effects.oil_height > 0.0;
-    if (is_starved || m->params.effects.flooded_gaps > 0.0) pass_supply(m, all, l);
-    if (m->params.effects.oil_height > 0.0) {
-      pass_meniscus(m, all, l);
-      counters->meniscus_nodes += all;
-    }
-    if (is_starved) pass_supplied(all, l);
+    pass_rollings(m, all, l, counters);
     if (m->params.effects.flooded_gaps > 0.0) {
       for (int c = 0; c < n_loaded; c++) pass_gaps(m, c * n, l);
       counters->gap_nodes += all;
@@ -424,4 +438,5 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inp
     counters->rolling_nodes += all;
   }
   sum_outputs(m, inputs, loaded, n_loaded, rolling, l, counters, outputs);
+  if (inputs[0].laws != NULL) keep_laws(m, &kind, inputs, loaded, n_loaded, rolling, l, counters);
 }

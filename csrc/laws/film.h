@@ -8,9 +8,10 @@
 
 /* (4) line, piezoviscous-elastic: h/Re = 2.922 W^-0.166 U^0.692 G^0.470 (Pan & Hamrock 1989, central). */
 #define TRB_FILM_LINE_LOAD 0.166
+#define TRB_FILM_LINE_SPEED 0.692
 static inline double trb_film_line_elastic(double log_w, double log_u, double log_g)
 {
-  return exp(1.0722683133285078 - TRB_FILM_LINE_LOAD * log_w + 0.692 * log_u + 0.470 * log_g);
+  return exp(1.0722683133285078 - TRB_FILM_LINE_LOAD * log_w + TRB_FILM_LINE_SPEED * log_u + 0.470 * log_g);
 }
 
 /* The smallest film of the same: h/Re = 1.714 W^-0.128 U^0.694 G^0.568 (Pan & Hamrock 1989). */

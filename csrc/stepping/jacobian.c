@@ -21,6 +21,7 @@ trb_status trb_jacobian_create(const trb_system *system, const trb_motion *motio
     j->changes = trb_memory_zeros(&j->memory, width, sizeof *j->changes);
     j->response = trb_memory_zeros(&j->memory, 6 * width, sizeof *j->response);
     j->with = trb_memory_zeros(&j->memory, width, sizeof *j->with);
+    trb_law_slopes_create(system->model, &j->memory, j->d->work);
     j->renewed = trb_memory_zeros(&j->memory, (size_t)system->model->n_rollers, sizeof *j->renewed);
     for (int b = 0; b < system->n_bodies; b++)
       if (system->bodies[b].modes != NULL) j->modal[b] = trb_modal_create(&j->memory, &system->bodies[b], system->layout.hub_width);

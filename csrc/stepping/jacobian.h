@@ -1,5 +1,5 @@
-/* Jacobian of the right-hand side (docs/theory/numerics.md#jacobian). The part of the slow pairs and of inertia is computed by differences, all
- * rollers moved at once, and kept until it is old, or poor for single rollers. The part of the fast pairs, which changes with each impact, comes in
+/* Jacobian of the right-hand side (docs/theory/numerics.md#jacobian). The part of the slow pairs and of inertia is computed by differences, those of
+ * raceways along slopes of their laws (contact/law_slopes.h), all rollers moved at once, and kept until it is old, or poor for single rollers. The part of the fast pairs, which changes with each impact, comes in
  * closed form with their forces, for rollers that touch alone. Pairs without a roller are part of the block of the hub, by differences. A ring
  * with coordinates has borders to all rollers: the slopes that tangents have with its place and motion, times what its coordinates do to these. */
 #ifndef TRB_STEPPING_JACOBIAN_H

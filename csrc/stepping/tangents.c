@@ -95,7 +95,9 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const int *cho
   const trb_model  *m = d->model;
   const double      time = d->drive.time, frame_speed = d->drive.frame_speed;
   const trb_instant at = trb_dynamics_instant(d, chosen, n);
+  d->work->laws_use = TRB_LAWS_KEPT;
   trb_dynamics_slow(d, &at, TRB_ANY_BODY, NULL);
+  d->work->laws_use = TRB_LAWS_FOLLOWED;
   for (int k = 0; k < n; k++) {
     const int    j = chosen[k];
     trb_tangent *r = &t->rollers[j];
@@ -126,6 +128,7 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const int *cho
   }
   trb_dynamics_pose_of(d, time, y, chosen, n);
   trb_rings_differentiate(t, d, chosen, n);
+  d->work->laws_use = TRB_LAWS_EXACT;
   /* these slopes are exact, so tangents are used at once, with a small reach */
   for (int k = 0; k < n && !t->has_slopes; k++) {
     t->rollers[chosen[k]].reach = trb_first_reach;
