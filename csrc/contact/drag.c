@@ -9,18 +9,20 @@
 static void evaluate(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
                      trb_detail *detail)
 {
-  const trb_params     *p = &m->params;
-  const trb_oil_inputs *oil = batch->pairs[0]->own;
-  const double          area = p->roller.diameter * p->roller.total_length;
+  const trb_params *p = &m->params;
+  const double      area = p->roller.diameter * p->roller.total_length;
   (void)detail;
   work->counters.drag_rollers += at->n * batch->n;
-  for (int k = 0; k < at->n; k++) {
-    const trb_vec3 v = at->rollers[at->chosen[k]].v;
-    const double   per = trb_drag_over_speed(p->effects.oil_fill, oil->density, p->effects.drag_coefficient, area, trb_norm(v));
-    const trb_vec3 force = trb_scale(-per, v);
-    const trb_load load = {
-        .on_a = {force, {0, 0, 0}}, .on_b = {trb_scale(-1.0, force), {0, 0, 0}}, .lost = {[TRB_BY_SLIDING] = per * trb_dot(v, v)}};
-    for (int i = 0; i < batch->n; i++) trb_add_load(batch->pairs[i], &load, &loads[at->chosen[k]]);
+  for (int i = 0; i < batch->n; i++) {
+    const trb_oil_inputs *oil = batch->pairs[i]->own;
+    for (int k = 0; k < at->n; k++) {
+      const trb_vec3 v = at->rollers[at->chosen[k]].v;
+      const double   per = trb_drag_over_speed(p->effects.oil_fill, oil->density, p->effects.drag_coefficient, area, trb_norm(v));
+      const trb_vec3 force = trb_scale(-per, v);
+      const trb_load load = {
+          .on_a = {force, {0, 0, 0}}, .on_b = {trb_scale(-1.0, force), {0, 0, 0}}, .lost = {[TRB_BY_SLIDING] = per * trb_dot(v, v)}};
+      trb_add_load(batch->pairs[i], &load, &loads[at->chosen[k]]);
+    }
   }
 }
 

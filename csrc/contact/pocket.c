@@ -385,10 +385,12 @@ trb_gaps trb_contact_pocket_of(const trb_model *m, const trb_pair *pair, const t
 void trb_contact_pocket(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
                         trb_detail *detail)
 {
-  for (int k = 0; k < at->n; k++) {
-    trb_load load;
-    if (at->apart != NULL && at->apart[at->chosen[k]] >> batch->index[0] & 1U) continue;
-    const trb_gaps gaps = trb_contact_pocket_of(m, batch->pairs[0], at, at->chosen[k], &work->counters, &load, NULL, detail);
-    if (!trb_gaps_clear(&gaps)) trb_add_load(batch->pairs[0], &load, &loads[at->chosen[k]]);
-  }
+  for (int i = 0; i < batch->n; i++)
+    for (int k = 0; k < at->n; k++) {
+      const int roller = at->chosen[k];
+      trb_load  load;
+      if (at->apart != NULL && at->apart[roller] >> batch->index[i] & 1U) continue;
+      const trb_gaps gaps = trb_contact_pocket_of(m, batch->pairs[i], at, roller, &work->counters, &load, NULL, detail);
+      if (!trb_gaps_clear(&gaps)) trb_add_load(batch->pairs[i], &load, &loads[roller]);
+    }
 }
