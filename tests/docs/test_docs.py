@@ -78,6 +78,19 @@ def test_links_lead_somewhere() -> None:
                 assert (page.parent / target).exists(), f"{name(page)}: {target}"
 
 
+def test_every_page_is_linked_and_leads_on() -> None:
+    """Of those of the interface, which are lists, only the first."""
+    pages = {page for page in PAGES if page.parent.name != "api" and page.name != "changelog.md"}
+    links = {
+        page: {(page.parent / link).resolve() for link in LINK.findall(page.read_text(encoding="utf-8"))}
+        for page in pages
+    }
+    led_to = set().union(*links.values())
+    for page in pages:
+        assert links[page] & (set(PAGES) - {page}), f"{page}: it links to no other page"
+        assert page in led_to or page == DOCS / "index.md", f"{page}: no page links to it"
+
+
 def test_every_page_is_in_the_contents() -> None:
     listed = set()
     for page in PAGES:
