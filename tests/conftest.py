@@ -2,6 +2,9 @@
 
 Worker processes of studies take seconds to start: their tasks are done in this process, in tests that do not ask for `workers`.
 
+Where rollers vibrate, a run repeats a piece of up to 80 ms with tighter tolerances, which takes much longer than a short run: in
+tests that ask for `probes` alone.
+
 Linear algebra takes one thread: several processes with two threads each wait for each other most of the time.
 
 Tests of Ctrl-C send signals: a shell that starts tests in the background lets them ignore it; Python then installs no handler.
@@ -66,6 +69,10 @@ def pytest_collection_finish() -> None:
 
 def pytest_sessionstart() -> None:
     """Before the fixtures of modules."""
+    from trbdyn.run.vibrations import Vibrations
+
+    JUDGED.append(Vibrations.judge)
+    Vibrations.judge = lambda *_: None
     if importlib.util.find_spec("trbdyn.extras") is not None:  # tests/api/test_without_extras.py takes them away
         from trbdyn.extras.study import executors
 
@@ -75,6 +82,9 @@ def pytest_sessionstart() -> None:
 
 def pytest_sessionfinish() -> None:
     """Another session may follow in this process."""
+    from trbdyn.run.vibrations import Vibrations
+
+    Vibrations.judge = JUDGED.pop()
     if WORKERS:
         from trbdyn.extras.study import executors
 
@@ -83,6 +93,14 @@ def pytest_sessionfinish() -> None:
 
 WORKERS: Final[list[Any]] = []
 """What starts worker processes."""
+JUDGED: Final[list[Any]] = []
+"""What measures how much steps take from vibrations."""
+
+
+@pytest.fixture
+def probes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Runs of this test repeat a piece with tighter tolerances where rollers vibrate."""
+    monkeypatch.setattr("trbdyn.run.vibrations.Vibrations.judge", JUDGED[0])
 
 
 @pytest.fixture

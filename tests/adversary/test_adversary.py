@@ -20,6 +20,7 @@ from trbdyn.run import vibrations
 
 HERE = Path(__file__).resolve().parent
 
+pytestmark = pytest.mark.usefixtures("probes")
 FINE = ("right", "warned", "chance", "stopped", "refused", "unjudged")
 FOUND = sorted((HERE / "found").glob("*.json"))
 

@@ -67,9 +67,9 @@ def test_the_power_is_that_of_the_energy_audit() -> None:
 
 @pytest.fixture(scope="module")
 def found() -> Any:
-    """Of runs of 2 turns alone."""
+    """Of runs of 4 turns alone."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(least_load, "TURNS", (2.0,))
+        patch.setattr(least_load, "TURNS", (4.0,))
         return trb.least_load(scene(oil_fill=0.1), [6000.0], [(0.0, 100.0), (0.0, 2000.0)], temperatures=[30.0])
 
 

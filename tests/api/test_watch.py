@@ -30,6 +30,7 @@ LOOSE: dict[str, Any] = {
 """Tolerances that bind nothing, and formulas that make energy out of lightly damped vibrations."""
 
 
+@pytest.mark.usefixtures("probes")
 def test_a_run_that_is_right_has_no_warnings(recwarn):
     result = trb.Simulation(paper_30310()).run(duration=0.01)
     assert result.success
@@ -223,6 +224,7 @@ def hardly_loaded(seed: int = 1) -> trb.Scene:
     )
 
 
+@pytest.mark.usefixtures("probes")
 def test_what_the_steps_take_from_vibrations_is_seen_and_measured():
     """With 'fast' the load is too low, by tight runs by 6.5 % from 10 to 30 ms and by 5.6 % from 20 to 90 ms: the steps take what
     should vibrate, and little is left to see."""
@@ -235,6 +237,7 @@ def test_what_the_steps_take_from_vibrations_is_seen_and_measured():
     assert "effects.damping" not in text, "damping is on"
 
 
+@pytest.mark.usefixtures("probes")
 def test_vibrations_that_the_steps_follow_are_no_reason_to_warn():
     """The rollers vibrate here as well, but damping takes what feeds it, and the numbers are right. With 'reference' the steps
     take 6 % of it."""
@@ -257,7 +260,7 @@ def test_a_difference_is_said_beyond_the_scatter_of_runs_that_are_as_good(off, s
 
 
 @pytest.fixture
-def short_probes(monkeypatch):
+def short_probes(probes, monkeypatch):
     """The repetition that decides about a warning is no longer than the first one: what it says stands in other tests."""
     monkeypatch.setattr("trbdyn.run.vibrations.LONGER", 20e-3)
     monkeypatch.setattr("trbdyn.run.vibrations.STEPS_LONGER", 20_000)
@@ -305,6 +308,7 @@ def test_the_damping_that_the_warning_names_makes_presets_agree():
     assert losses[0] == pytest.approx(losses[1], rel=0.25)
 
 
+@pytest.mark.usefixtures("probes")
 @pytest.mark.parametrize("loads", [(1230.0, 0.0), (4930.0, 12_000.0)], ids=["light", "combined"])
 def test_rollers_that_carry_are_not_called_vibrating(loads):
     """Not in the unloaded zone of a combined load, either: the others carry."""

@@ -23,6 +23,7 @@ def turned_over(result: trb.Result) -> float:
     return 0.5 * float(sum(np.abs(np.diff(result[name])).sum() for name in terms))
 
 
+@pytest.mark.usefixtures("probes")
 @pytest.mark.parametrize("effects", ["paper", "standard"])
 @pytest.mark.parametrize(("preset", "speed"), [("standard", 3000.0), ("standard", 10_000.0), ("reference", 1.0)])
 @pytest.mark.parametrize(("axial", "radial"), [(1230.0, 0.0), (4930.0, UNLOADS)])

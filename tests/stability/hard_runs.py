@@ -7,6 +7,7 @@ import time as clock
 from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 from hard_scenes import Hard, smooth
@@ -16,6 +17,7 @@ import trbdyn as trb
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.run import running
 from trbdyn.run.options import ACCURACY
+from trbdyn.run.vibrations import Vibrations
 
 Array = NDArray[np.float64]
 Model = trb.Scene | trb.Assembly
@@ -99,6 +101,14 @@ def judge(hard: Hard, *, quick: bool = False) -> Verdict:
     return verdict
 
 
+def _beside(sim: trb.Simulation, duration: float, slow: bool = False) -> Found:
+    """A run that another one is compared with: what its steps take from vibrations is not measured, which takes longer than the
+    run.
+    """
+    with patch.object(Vibrations, "judge", lambda *_: None):
+        return _run(sim, duration, slow)[0]
+
+
 def _run(sim: trb.Simulation, duration: float, slow: bool = False) -> tuple[Found, Array]:
     watched: list[tuple[float, float]] = [(sim.time, 0.0)]
 
@@ -173,7 +183,7 @@ def _energy(result: Found) -> float:
 
 def _compare(hard: Hard, scene: Model, result: Found, verdict: Verdict) -> None:
     short = min(hard.duration, hard.compared)
-    tight, _ = _run(trb.Simulation(scene, **TIGHT), short, hard.slow)
+    tight = _beside(trb.Simulation(scene, **TIGHT), short, hard.slow)
     verdict.demand(tight.success, f"the reference did not finish: {tight.message}")
     verdict.demand(closure(tight) <= hard.closure, f"energy of the reference closes to {closure(tight):.2g} only")
     ours = [result, *_runs_beside(hard, scene, short, ACCURACY[hard.accuracy].model_dump())]
@@ -191,7 +201,7 @@ def _runs_beside(hard: Hard, scene: Model, duration: float, options: dict[str, A
     results = []
     for factor in np.linspace(*NEAR, hard.runs - 1):
         scaled = {name: value if isinstance(value, str) else factor * value for name, value in options.items()}
-        results.append(_run(trb.Simulation(scene, accuracy=hard.accuracy, **scaled), duration, hard.slow)[0])
+        results.append(_beside(trb.Simulation(scene, accuracy=hard.accuracy, **scaled), duration, hard.slow))
     return results
 
 
@@ -216,7 +226,7 @@ def _made_by_twin(scene: trb.Scene, duration: float) -> float:
         "rolling_resistance": False,
     }
     twin = scene.replace(effects=scene.effects.replace(**none, rolling_pressure_force=False, damping="off"))
-    result, _ = _run(trb.Simulation(twin, **TIGHT), duration)
+    result = _beside(trb.Simulation(twin, **TIGHT), duration)
     residual = np.abs(result.energy_balance["residual"]).max()
     return float(residual / np.max(result.kinetic_energy + result.elastic_energy))
 
@@ -226,7 +236,7 @@ def _difference_of_methods(hard: Hard, scene: Model) -> float:
     speeds = []
     for options in ({"max_order": 2}, second):
         sim = trb.Simulation(scene, **TIGHT, **options)
-        result, _ = _run(sim, min(hard.window, hard.duration))
+        result = _beside(sim, min(hard.window, hard.duration))
         if not result.success:
             return math.inf
         parts = [part.reshape(-1) for one in result.parts for part in (one.roller_velocity, one.cage_velocity)]
