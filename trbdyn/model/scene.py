@@ -76,12 +76,12 @@ class Scene(TurningRings, Model):
     displacement : tuple of float, History or None, shape (3,), optional
         Position of the inner ring along x, y, z (m), in place of loads. Where an entry is None, the load along it
         decides: ``(None, None, -20e-6)`` is a preload by displacement under which `radial_load` acts. TOML writes
-        'free' for None. The ring of an NU or N without an axial load stands at z = 0 where nothing else is given.
+        'free' for None. The ring of an NU or N without an axial load is at z = 0 unless its position is given.
     unloaded : {'refused', 'rests'}
-        What the inner ring does under an axial load that does not hold it, 0 for instance. Refused: an error. Rests: it goes no
-        further than where rollers and rings just touch at this speed, and rests there; what else holds the shaft, such as a
-        second bearing without play, carries what is missing, and a radial load with it. A ring with end play is not modelled: it
-        would move as its mass and its shaft let it.
+        What the inner ring does under an axial load that is too small to hold it, for instance 0. Refused: an error. Rests: the
+        ring rests where rollers and rings just touch at this speed. The missing axial force, and a radial load, are then carried
+        by what else holds the shaft, such as a second bearing without play. A ring that moves within an end play is not
+        modelled.
     lubricant : Lubricant or str
         The oil at its temperature, or the name of one of `trbdyn.lubricants.OILS` at 60 C, such as ``"vg68"``.
     effects : Effects
@@ -105,7 +105,7 @@ class Scene(TurningRings, Model):
     elastic_cage : ElasticCage, optional
         Natural modes by which the cage deforms; without it the cage is rigid.
     defects : tuple of Pit, DepthMap or Waviness
-        Where raceways and rollers are off their true form; by default nowhere. The equilibrium at the start does not know them.
+        Where raceways and rollers are off their true form; by default nowhere. The equilibrium at the start has none.
     gravity : tuple of float or History, shape (3,)
         Acceleration of gravity (m/s2), each part from -1e7 to 1e7; acts if `effects.gravity`.
 

@@ -37,18 +37,18 @@ SHOWN_RECORDS: Final = 20_000
 
 
 class Result(Derived, Displayed):
-    """What a run gives.
+    """Result of a run.
 
     Every recorded field is an attribute: a read-only float64 array with time as its first axis, in SI units
     (``result.cage_position`` has shape (T, 3)); ``result.fields`` lists them with their units and texts. A result that
-    was loaded reads a field from its file when it is first asked for.
+    was loaded reads a field from its file when it is first used.
 
     Parameters
     ----------
     source : Source
         Where the fields come from.
     info : RunInfo
-        What is known of the run besides.
+        Settings, length and messages of the run.
     scene : Scene, optional
         The scene; by default it is made from ``info.scene`` when first asked for.
     """

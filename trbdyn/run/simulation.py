@@ -43,12 +43,12 @@ R = TypeVar("R", Result, AssemblyResult)
 
 
 class Simulation(Displayed, Generic[R]):
-    """Steps a scene, or bearings on one shaft.
+    """Simulates a scene, or bearings on one shaft, in time.
 
     Parameters
     ----------
     subject : Scene, Assembly or Seating
-        What is simulated. An assembly begins in its equilibrium at speed; a seating says where the shaft stands.
+        What is simulated. An assembly begins in its equilibrium at speed; a seating gives the place of the shaft.
     accuracy : {'fast', 'standard', 'reference'}
         Preset of the tolerances.
     instruction_set : str
@@ -68,12 +68,12 @@ class Simulation(Displayed, Generic[R]):
     Warns
     -----
     UnusualInput
-        Where numbers are allowed but can hardly be meant; the texts are kept in `warnings` and in the result's notes.
+        If numbers are allowed but unlikely to be intended; the texts are kept in `warnings` and in the result's notes.
 
     Notes
     -----
-    docs/theory/motion.md#bearings-on-one-shaft has the equations of several bearings. What this class gives of one bearing it
-    gives of several by their names.
+    docs/theory/motion.md#bearings-on-one-shaft has the equations of several bearings. Quantities of
+    several bearings are given by the names of the bearings.
 
     Examples
     --------
@@ -355,7 +355,7 @@ class Simulation(Displayed, Generic[R]):
         rates: Mapping[str, Any] | None = None,
         **inputs: Any,
     ) -> float:
-        """One step of the integrator, from the end of its last one, or steps to a time; gives the new time (s).
+        """Make one step of the integrator, or steps until a time; return the new time (s).
 
         Inputs may be given with the time. They are in force until others are given. So another program can drive a bearing: a
         controller, or a model of a machine.
@@ -501,7 +501,7 @@ class Simulation(Displayed, Generic[R]):
         checkpoint_every: float | None = None,
         overwrite: bool = False,
     ) -> R:
-        """Step on and keep records; output times never change the steps.
+        """Simulate for a time and keep records; output times never change the steps.
 
         Parameters
         ----------
@@ -513,7 +513,7 @@ class Simulation(Displayed, Generic[R]):
             End earlier, when the averages named here are known well enough: largest half width of the 95 % confidence interval
             over the average, for instance ``{"torque": 0.01, "orbit_rms_over_cpr": 0.05}``. 'cage': when the motion of the cage
             is known to have settled, with its orbit within 0.05 Cpr (``{"cage": 0.1}``: within 0.1 Cpr). `revolutions` or
-            `duration` is then the longest run; one that ends there without it warns.
+            `duration` is then the longest run; a run that ends there first gives a warning.
         save_every : float, optional
             Time between records (s). By default a 32nd of a turn of the shaft, but at most 1e-2 s; in a run that would have
             fewer than 200 records a half, a quarter and so on of that, as far as 1e-4 s. ``result.meta["kept"]`` says
@@ -526,8 +526,8 @@ class Simulation(Displayed, Generic[R]):
             Show a progress bar.
         callback : callable, optional
             Called with this simulation about every tenth of a second; True ends the run. What it raises ends the run
-            too, after the file is closed; the result so far is the attribute ``result`` of the exception. It may look
-            at the simulation, but not step, restart or set it.
+            too, after the file is closed; the result so far is the attribute ``result`` of the exception. It may read
+            the simulation, but not step, restart or set it.
         callback_every : float, optional
             Bearing time between two calls of the callback (s). It then may give a dict of inputs, see `step`, which are in force
             until its next call: feedback. Records are made at these times, without peaks; the same callback gives the same bits.

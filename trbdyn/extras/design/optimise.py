@@ -184,13 +184,13 @@ def optimise(
     over: Spectrum | None = None,
     **how: Unpack[Running],
 ) -> Optimum:
-    """The designs with the best results, of several aims the front.
+    """Find the designs with the best results; with several aims, the designs of which none is better in all aims (the front).
 
     A third of the designs fills the space of the changes evenly. Then Gaussian processes are fitted to all results, and eight
-    designs at a time are run where they promise most. What a short run promises, a longer one need not keep, as a whirl takes
-    time to grow. So before each eight the design that is the best then is run `confirm` times as long, and its new results
-    count. A fit to the changes that such runs make corrects the other designs. In the end designs are confirmed until the best
-    ones are. Needs the package scikit-learn of the extra `study`.
+    designs at a time are run where the best results are expected. A longer run may give other results than a short one, because
+    a whirl takes time to grow. Before each eight designs the best one so far is therefore run `confirm` times as long, and its
+    new results replace the old ones. A fit to the changes from short to long runs corrects the other designs. At the end, longer
+    runs are made until the best designs have one. Needs the package scikit-learn of the extra `study`.
 
     Parameters
     ----------

@@ -231,13 +231,13 @@ def thermal(
     seed: int = 0,
     **how: Unpack[Running],
 ) -> Thermal | AssemblyThermal:
-    """The temperatures at which a bearing, or each bearing on a shaft, gives off as much heat as it makes.
+    """Temperatures at which the heat flow out of a bearing, or of each bearing on a shaft, equals its losses.
 
     Losses come from runs, each until they are known within 1 % as in `trbdyn.torque_map`, or over 32 turns: then their error is
-    told, and the bands have it in them. Heat goes through a network of four nodes. The temperature of films, the mean of rings
+    stated and included in the bands. Heat goes through a network of four nodes. The temperature of films, the mean of rings
     and rollers, is the oil's in the run; where the scene has a `Growth`, its parts get those of the nodes, which change
-    the plays of the pockets. The films' temperature is bracketed with runs in which a spacer stands for the cage, and found with
-    full runs. Bearings on a shaft run together, each at the temperature of its own films.
+    the plays of the pockets. Runs in which a spacer replaces the cage give limits of the films' temperature, full runs
+    find it. Bearings on a shaft run together, each at the temperature of its own films.
 
     Parameters
     ----------
@@ -267,7 +267,7 @@ def thermal(
 
     Notes
     -----
-    What is left out: the clearance of the bearing (a given load sets the ring's place, whatever grows), heat that one
+    What is left out: the clearance of the bearing (the ring takes the place at which it carries its load), heat that one
     film gets from another. docs/theory/heat.md.
 
     Examples
