@@ -129,7 +129,10 @@ EFFECTS: Final = (
         ("boundary_nodes",),
         {
             "contact/passes.h": (
-                (r"\n  if \(p->lubrication == TRB_LUBRICATION_MIXED && \(p->mixed.*?\} else \{(.*?)\n  \}\n", r"\1\n"),
+                (
+                    r"\n  if \(p->effects\.lubrication == TRB_LUBRICATION_MIXED && \(p->effects.mixed.*?\} else \{(.*?)\n  \}\n",
+                    r"\1\n",
+                ),
             )
         },
     ),
@@ -139,7 +142,9 @@ EFFECTS: Final = (
         {"traction": "none"},
         {"traction": "muraki_kimura"},
         counters=("traction_nodes",),
-        patch={"contact/passes.h": ((r"if \(p->traction == TRB_TRACTION_MURAKI_KIMURA\) \{.*?\n  \} else ", ""),)},
+        patch={
+            "contact/passes.h": ((r"if \(p->effects\.traction == TRB_TRACTION_MURAKI_KIMURA\) \{.*?\n  \} else ", ""),)
+        },
     ),
     Effect(
         "thermal",
@@ -148,7 +153,7 @@ EFFECTS: Final = (
         {"traction": "muraki_kimura", "thermal": True},
         {"traction": "muraki_kimura"},
         counters=("thermal_nodes",),
-        patch={"contact/passes.h": ((r"\n    if \(m->params\.thermal > 0\.0\) \{.*?\n    \}", ""),)},
+        patch={"contact/passes.h": ((r"\n    if \(m->params\.effects\.thermal > 0\.0\) \{.*?\n    \}", ""),)},
     ),
     Effect(
         "rolling resistance",
@@ -160,7 +165,7 @@ EFFECTS: Final = (
             KERNEL: (
                 (r"\n  if \(rolling\) \{.*?\n  \}", "\n  (void)rolling;"),
                 (r"    sum_rolling\(in, c \* n, n, l, out\);", "    (void)sum_rolling;"),
-                (r"\n    if \(m->params\.rolling_pressure_force > 0\.0.*?\n    \}", "\n    (void)counters;"),
+                (r"\n    if \(m->params\.effects\.rolling_pressure_force > 0\.0.*?\n    \}", "\n    (void)counters;"),
             )
         },
     ),
@@ -171,7 +176,11 @@ EFFECTS: Final = (
         {"rolling_resistance": True, "rolling_pressure_force": True},
         {"rolling_resistance": True},
         ("pressure_force_nodes",),
-        {KERNEL: ((r"\n    if \(m->params\.rolling_pressure_force > 0\.0.*?\n    \}", "\n    (void)counters;"),)},
+        {
+            KERNEL: (
+                (r"\n    if \(m->params\.effects\.rolling_pressure_force > 0\.0.*?\n    \}", "\n    (void)counters;"),
+            )
+        },
     ),
     Effect(
         "damping",
