@@ -9,9 +9,12 @@
 - Supply of oil: `Effects.supply` of the state of lubrication. That of a bath, 0.83, was fitted to torques of the 32216 and the
   LM12700, so that the error that is quoted for a bearing is that with the supply fitted without it. Drag by the oil fill of the
   state.
-- Bands are those of `trbdyn.study.open_inputs`, the same that `trbdyn.uncertainty` gives a user; what a source leaves open of a
-  point beside them is in `own_bands`: load of the LM12700 2.8 to 3.8 kN; cup angle of the 32216 13.7 deg (the load zone of the
-  source) to 15.7 deg (catalogues); temperature of the oil of the 32008 and the 32208 (FVA3 at 40 to 80 C).
+- HM801349: the source tells the number of rollers, the pitch circle and the angle of the cup; the rest is estimated from the
+  dimensions and C as of any catalogue bearing. Its oil is a SAE 75W-90, with the typical values that ship. Its torque is that of
+  two bearings on the shaft of a pinion, less an estimate for the seal.
+- Bands are those of `trbdyn.uncertainty` (`open_inputs`), the same that a user gets; what a source leaves open of a point beside
+  them is in `own_bands`: load of the LM12700 2.8 to 3.8 kN, of the HM801349 a fifth either way; cup angle of the 32216 13.7 deg
+  (the load zone of the source) to 15.7 deg (catalogues); temperature of the oil of the 32008 and the 32208 (FVA3 at 40 to 80 C).
 - The band of a torque goes from the lowest to the highest of the laws of rolling resistance that can be defended
   (`trbdyn.run.torque_laws`).
 
@@ -41,6 +44,7 @@ CATALOGUE: Final = {
     "32216": {"bore": 0.080, "outside": 0.140, "Y": 1.4, "series": "322"},
     "32008": {"bore": 0.040, "outside": 0.068, "Y": 1.6, "series": "320X"},
     "LM12700": {"bore": 0.02199, "outside": 0.04524, "Y": 1.96, "series": "LM"},
+    "HM801349": {"bore": 0.0381, "outside": 0.08255, "Y": 1.1, "series": "HM"},
 }
 """Boundary dimensions (m) and axial factor Y, from catalogues."""
 
@@ -63,6 +67,16 @@ BEARINGS: Final[dict[str, Callable[[], trb.Bearing]]] = {
     "32216": trb.cases.bearing_32216,
     "32008": lambda: _made("32008", 23, math.degrees(0.2473), 54e-3, 0.5 * (6.131e-3 + 6.846e-3), 13.66e-3),
     "LM12700": _lm12700,
+    "HM801349": lambda: trb.Bearing.from_catalogue(
+        name="HM801349",
+        bore=0.0381,
+        outside=0.08255,
+        width=0.02937,
+        C=88e3,
+        e=0.55,
+        n_rollers=19,
+        pitch_diameter=61.5e-3,
+    ),
     "32208": lambda: _made(
         "32208", 17, 14.0, 60e-3, 0.5 * (9.46e-3 + 10.63e-3), 17e-3, ribs=trb.Ribs(edge_high=2.706e-3)
     ),
@@ -102,6 +116,8 @@ def oil_of(point: Measurement) -> trb.Lubricant:
     """Oil of a measurement at the temperature of its films."""
     if point.bearing == "LM12700":  # SAE 75W; its viscosity is assumed
         return trb.lubricants.Oil(nu40=26.0, nu100=5.0, density=870.0).at(point.temperature_c)
+    if point.bearing == "HM801349":  # SAE 75W-90; typical values
+        return trb.lubricants.gear_75w90(point.temperature_c)
     if point.bearing == "32008":  # FVA3A
         return trb.lubricants.Oil(nu40=90.02, nu100=10.41, density=880.0).at(point.temperature_c + 10.0)
     return trb.lubricants.vg100(60.0 if math.isnan(point.temperature_c) else point.temperature_c)
@@ -129,9 +145,11 @@ def own_bands(point: Measurement, scene: trb.Scene) -> tuple[Band, ...]:
     """What the source of a point leaves open beside `open_inputs`, or in place of them."""
     t = scene.lubricant.temperature_c
     found = []
+    load = point.axial_load
     for bearing, path, low, high, source in (
         ("32216", "bearing.cup_half_angle_deg", 13.7, 15.7, "load zone and catalogues"),
         ("LM12700", "scene.axial_load", 2800.0, 3800.0, "back-calculated"),
+        ("HM801349", "scene.axial_load", 0.8 * load, 1.2 * load, "from the starting torque"),
         ("32008", "lubricant.temperature_c", t - 10.0, t + 15.0, "films over the oil that is supplied"),
         ("32208", "lubricant.temperature_c", t - 20.0, t + 20.0, "not given"),
     ):

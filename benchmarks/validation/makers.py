@@ -4,6 +4,9 @@ Pure axial load of a tenth of C, VG100, without drag of the oil on either side. 
 its author confirmed on nearly 200 bearings, with the load of the whole contact and the heat of its inlet, and the default's
 torque of the ribs; SKF's model with its inlet and its replenishment of a bath; the formula with f0 and f1, as Schaeffler prints
 it (Palmgren). No torque of these bearings was measured here.
+
+The formulas are those of bearings with plenty of oil and of rollers as they are made. So the default is also set beside them with
+full supply on either side, and `CHANGES` tell what each of its own parts is worth.
 """
 
 from __future__ import annotations
@@ -35,6 +38,13 @@ TEMPERATURES: Final = (50.0, 80.0)
 SPEEDS: Final = (1000.0, 3000.0)
 LOAD: Final = 0.1
 """Axial load over C."""
+FULL: Final[dict[str, Any]] = {"effects.supply": 1.0}
+CHANGES: Final[dict[str, dict[str, Any]]] = {
+    "rollers without a profile": {"bearing.roller.profile": trb.Profile.straight()},
+    "flooded gaps beside the loaded length": {"effects.flooded_gaps": True},
+    "elastic hysteresis of 0.01": {"effects.hysteresis": 0.01},
+}
+"""What is changed beside full supply, each by itself."""
 
 
 def aihara(scene: trb.Scene) -> float:
@@ -52,6 +62,12 @@ def aihara(scene: trb.Scene) -> float:
         g = oil.pressure_coefficient * modulus
         lost += 2.0 * 88.0 * g**-0.342 * u**0.658 * w**0.31 * modulus * radius * length * heat * mean
     return bearing.n_rollers * lost / speed
+
+
+def torque(scene: trb.Scene) -> float:
+    """Torque at the equilibrium (N m)."""
+    speed = float(scene.speed_rpm) * math.pi / 30.0  # type: ignore[arg-type]
+    return float(np.sum(trb.Simulation(scene).contacts()["power"])) / speed
 
 
 def rows() -> list[dict[str, Any]]:
@@ -84,22 +100,43 @@ def rows() -> list[dict[str, Any]]:
                         "speed_rpm": rpm,
                         "axial_load": load,
                         "own": own,
+                        "full": torque(scene.replace(FULL)),
+                        "changes": {key: torque(scene.replace(FULL | change)) for key, change in CHANGES.items()},
                         "rib": rib / angular,
                         "aihara": aihara(scene) + rib / angular,
                         "skf": skf.torque(series=series, **common),
+                        "skf_full": skf.torque(series=series, replenishment=0.0, **common),
                         "palmgren": skf.palmgren(**common),
                     }
                 )
     return found
 
 
-def ratios(found: list[dict[str, Any]]) -> dict[str, dict[str, float]]:
-    """Median, smallest and largest ratio of the default to each formula."""
+def ratios(found: list[dict[str, Any]], measured: list[dict[str, Any]]) -> dict[str, dict[str, float]]:
+    """Median, smallest and largest ratio of the default to each formula, and the median with full supply on either side (SKF's
+    formula without its replenishment). `measured` has rows of the first table: medians of what was measured, and of the
+    default, over the same formulas there.
+    """
+    full = {"aihara": "aihara", "skf": "skf_full", "palmgren": "palmgren"}
     out = {}
-    for name in ("aihara", "skf", "palmgren"):
+    for name in full:
         shares = [one["own"] / one[name] for one in found]
-        out[name] = {"median": float(np.median(shares)), "low": min(shares), "high": max(shares)}
+        there = [one["options"]["aihara, full supply"] if name == "aihara" else one[name] for one in measured]
+        out[name] = {
+            "median": float(np.median(shares)),
+            "low": min(shares),
+            "high": max(shares),
+            "full": float(np.median([one["full"] / one[full[name]] for one in found])),
+            "measured": float(np.median([one["measured"] / by for one, by in zip(measured, there, strict=True)])),
+            "there": float(np.median([one["predicted"] / by for one, by in zip(measured, there, strict=True)])),
+        }
     return out
+
+
+def parts(found: list[dict[str, Any]]) -> dict[str, float]:
+    """What each change makes of the torque: median ratio."""
+    own = {"full supply": float(np.median([one["full"] / one["own"] for one in found]))}
+    return own | {key: float(np.median([one["changes"][key] / one["full"] for one in found])) for key in CHANGES}
 
 
 def starting_torque(scene: trb.Scene) -> tuple[float, float]:
@@ -130,18 +167,13 @@ def starts() -> dict[str, float]:
 def exponents(scene: trb.Scene, step: float = 1.25) -> dict[str, float]:
     """Exponents of the torque of a scene with viscosity, speed and load (1), at the equilibrium."""
 
-    def torque(changes: dict[str, Any]) -> float:
-        one = scene.replace(changes)
-        speed = float(one.speed_rpm) * math.pi / 30.0  # type: ignore[arg-type]
-        return float(np.sum(trb.Simulation(one).contacts()["power"])) / speed
-
-    oil, base = scene.lubricant, torque({})
+    oil, base = scene.lubricant, torque(scene)
     cooler = oil.temperature_c - 4.0
     colder = scene.replace({"lubricant.temperature_c": cooler})
     by_oil = math.log(colder.lubricant.viscosity / oil.viscosity)
     speed, load = float(scene.speed_rpm), float(scene.axial_load)  # type: ignore[arg-type]
     return {
-        "viscosity": math.log(torque({"lubricant.temperature_c": cooler}) / base) / by_oil,
-        "speed": math.log(torque({"speed_rpm": step * speed}) / base) / math.log(step),
-        "load": math.log(torque({"axial_load": step * load}) / base) / math.log(step),
+        "viscosity": math.log(torque(colder) / base) / by_oil,
+        "speed": math.log(torque(scene.replace(speed_rpm=step * speed)) / base) / math.log(step),
+        "load": math.log(torque(scene.replace(axial_load=step * load)) / base) / math.log(step),
     }

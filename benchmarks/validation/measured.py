@@ -56,6 +56,8 @@ class Measurement:
         Temperature that the source gives (C), of what says `validation.assumptions`; not a number where it gives none.
     supply : str
         State of lubrication, a name in `trbdyn.lubricants.REPLENISHMENT`.
+    held_back : bool
+        No choice of the package was made with it: neither the supply of oil was fitted to it, nor the ribs compared.
     """
 
     source: str
@@ -68,6 +70,7 @@ class Measurement:
     radial_load: float
     temperature_c: float
     supply: str
+    held_back: bool = False
 
 
 _FIGURES = "read from figures by others, good to 10 %"
@@ -105,10 +108,24 @@ SOURCES: Final = (
         doi="10.3390/machines13100910",
         reading="means of the text: 0.61 and 0.56 N m",
     ),
+    Source(
+        key="Cruz 2021",
+        title="Tandem tapered roller bearings no-load torque loss in a rear axle gear transmission",
+        authors="J. A. O. Cruz, P. M. T. Marques, J. H. O. Seabra, R. C. Martins",
+        where="Tribology International 157 (2021) 106876",
+        doi="10.1016/j.triboint.2021.106876",
+        reading=f"{_FIGURES}, who took 0.10 N m for the seal and the axial load from the starting torque; half of what two "
+        "bearings have",
+    ),
 )
 
 _AXIAL = {500.0: 1.30, 2000.0: 2.95, 4000.0: 3.75}
 _COMBINED = {500.0: 1.50, 1000.0: 1.95, 2000.0: 2.50, 4000.0: 3.25}
+_AXIAL_42 = {500.0: 1.70}
+_COMBINED_42 = {500.0: 2.00, 1000.0: 2.65, 2000.0: 3.50, 4000.0: 4.45}
+_PAIR = {(1500.0, 5279.0): 1.35, (2000.0, 5279.0): 1.60, (1500.0, 2083.0): 0.95, (1500.0, 8336.0): 1.65}
+"""Two HM801349 with a seal (N m), by speed (rpm) and axial load (N)."""
+_SEAL = 0.10
 _LM = {200.0: 0.45, 400.0: 0.2, 800.0: 0.115, 1600.0: 0.085, 2400.0: 0.09, 3200.0: 0.1, 4000.0: 0.11, 4800.0: 0.12}
 
 
@@ -121,9 +138,12 @@ def _torques(
     radial: float,
     t: float,
     supply: str,
+    held_back: bool = False,
 ) -> list[Measurement]:
     return [
-        Measurement(source, bearing, "torque", torque, max(error, 0.1 * torque), speed, axial, radial, t, supply)
+        Measurement(
+            source, bearing, "torque", torque, max(error, 0.1 * torque), speed, axial, radial, t, supply, held_back
+        )
         for speed, torque in torques.items()
     ]
 
@@ -134,14 +154,34 @@ MEASUREMENTS: Final = (
     *_torques("Zhou 1991", "LM12700", _LM, 0.01, 3600.0, 0.0, 80.0, "bath"),
     Measurement("Manjunath 2023", "32008", "rolling_torque", 1.07, 0.107, 2200.0, 12850.0, 0.0, 55.0, "flooded"),
     Measurement("Manjunath 2023", "32008", "rolling_torque", 0.95, 0.095, 2200.0, 12850.0, 0.0, 65.0, "flooded"),
+    *_torques("Wingertszahn 2023", "32216", _AXIAL_42, 0.15, 6000.0, 0.0, 42.0, "bath", held_back=True),
+    *_torques("Wingertszahn 2023", "32216", _COMBINED_42, 0.15, 6000.0, 6500.0, 42.0, "bath", held_back=True),
+    *(
+        one
+        for (speed, axial), pair in _PAIR.items()
+        for one in _torques(
+            "Cruz 2021",
+            "HM801349",
+            {speed: 0.5 * (pair - _SEAL)},
+            0.05 * pair,
+            axial,
+            0.0,
+            62.2,
+            "bath",
+            held_back=True,
+        )
+    ),
     Measurement("Wingertszahn 2023", "32216", "loaded_rollers", 16.0, 0.5, 500.0, 6000.0, 0.0, 50.0, "bath"),
     Measurement("Wingertszahn 2023", "32216", "loaded_rollers", 11.0, 0.5, 500.0, 6000.0, 16000.0, 50.0, "bath"),
     Measurement("Zhang 2025", "32208", "torque_change", -8.2, 8.0, 1800.0, 2160.0, 0.0, math.nan, "jet"),
 )
 
 NOT_ENOUGH: Final = {
-    "32216 at 42 C (Wingertszahn 2023)": "no reading of the figure is at hand",
-    "HM801349": "no reading is at hand",
+    "32216 under 6.5 kN of preload with 1 to 15 kN radial, 2000 rpm (Wingertszahn 2023, figure 7)": "1.30 to 1.62 N m, half "
+    "of what figure 5 has under an axial load of 6 kN: what the preload becomes under load is not told",
+    "32216 and 32208 at other speeds and loads (Wingertszahn 2023)": "no reading of the figures is at hand",
+    "32008 below 2200 rpm (Manjunath 2023)": "two readings of one figure by the same reader differ: 0.58 and 0.97 N m at "
+    "1000 rpm",
     "two HH926749, breakaway (Hu 2025)": "torque at rest, in a grease that is not named: 25 N m at 5 kN and 42 N m at "
     "25 kN, most of it without a load",
     "30306 (SKF's tool)": "computed, not measured",

@@ -54,6 +54,27 @@ def test_fill_of_a_bath() -> None:
         trb.lubricants.bath_fill(bearing, 1.0)
 
 
+@pytest.mark.parametrize(
+    ("measured_on", "said"),
+    [
+        ("ring", "60 C of the ring, films from -3 to +10 K"),
+        ("film", "60 C of the films, films from -3 to +3 K"),
+        ("supply", "60 C of the oil that is supplied, films from +0 to +25 K"),
+    ],
+)
+def test_the_summary_tells_what_the_temperature_was_measured_on(measured_on: str, said: str) -> None:
+    """The band is that of an uncertainty; an oil that is known at one temperature alone has none."""
+    oil = trb.lubricants.vg100(60.0).replace(temperature_of=measured_on)
+    scene = trb.cases.scene_30310(3000.0, lubricant=oil)
+    summary = trb.Simulation(scene).run(duration=2e-4).summary()
+    assert summary["oil_temperature"] == said
+    assert said in str(summary)
+    band = next(band for band in open_inputs(scene) if band.path == "lubricant.temperature_c")
+    assert f"from {band.low - 60.0:+g} to {band.high - 60.0:+g} K" in said
+    fixed = oil.replace(oil=None)
+    assert "oil_temperature" not in trb.Simulation(scene.replace(lubricant=fixed)).run(duration=2e-4).summary()
+
+
 def test_the_summary_tells_the_share_of_drag() -> None:
     def summed(fill: float | str) -> dict[str, Any]:
         scene = trb.cases.scene_30310(6000.0, effects=trb.Effects(oil_fill=fill))  # type: ignore[arg-type]

@@ -66,12 +66,28 @@ def test_measurements_are_those_of_the_package() -> None:
     from validation.measured import MEASUREMENTS, SOURCES
 
     torques = {
-        (p.speed_rpm, p.radial_load): p.value for p in MEASUREMENTS if p.quantity == "torque" and p.bearing == "32216"
+        (p.speed_rpm, p.radial_load): p.value
+        for p in MEASUREMENTS
+        if (p.quantity, p.bearing, p.held_back) == ("torque", "32216", False)
     }
     axial = {(speed, 0.0): value for speed, value in trb.cases.MEASURED_TORQUE_32216.items()}
     combined = {(speed, 6500.0): value for speed, value in trb.cases.MEASURED_TORQUE_32216_COMBINED.items()}
     assert torques == axial | combined
     assert {point.source for point in MEASUREMENTS} <= {source.key for source in SOURCES}
+
+
+def test_points_that_were_held_back(kept: dict[str, Any]) -> None:
+    """A 32216 at 42 C in place of 50 C, and two HM801349 with a seal of 0.1 N m: half of the rest is that of one bearing."""
+    held = [row for row in kept["results"] if row["is_held_back"]]
+    by_name = {name: [row for row in held if row["bearing"] == name] for name in ("32216", "HM801349")}
+    assert [len(rows) for rows in by_name.values()] == [5, 4]
+    assert {row["temperature_c"] for row in by_name["32216"]} == {42.0}
+    measured = [row["measured"] for row in by_name["HM801349"]]
+    assert measured == pytest.approx([0.625, 0.75, 0.425, 0.775])
+    summary = kept["summary"]
+    assert summary["held_back"] == pytest.approx({name: weighted(rows) for name, rows in by_name.items()})
+    assert summary["held_back"]["32216"] < 15.0
+    assert summary["held_back"]["HM801349"] < 48.0
 
 
 def weighted(rows: list[dict[str, Any]], key: str = "predicted") -> float:
@@ -90,7 +106,8 @@ def weighted(rows: list[dict[str, Any]], key: str = "predicted") -> float:
 def test_the_summary_follows_from_the_rows(kept: dict[str, Any]) -> None:
     rows, summary = kept["results"], kept["summary"]
     assert not kept["quick"]
-    torques = [row for row in rows if row["quantity"] in ("torque", "rolling_torque")]
+    every = [row for row in rows if row["quantity"] in ("torque", "rolling_torque")]
+    torques = [row for row in every if not row["is_held_back"]]
     inside = [
         row["low"] - row["reading_error"] <= row["measured"] <= row["high"] + row["reading_error"] for row in rows
     ]
@@ -101,7 +118,7 @@ def test_the_summary_follows_from_the_rows(kept: dict[str, Any]) -> None:
     assert summary["mean_error"] == pytest.approx(weighted(fast))
     assert summary["mean_error_slow"] == pytest.approx(weighted([r for r in torques if r["speed_rpm"] < 1000.0]))
     assert summary["max_error"] == pytest.approx(np.max(np.abs(errors)))
-    halves = [50.0 * (row["high"] - row["low"]) / row["predicted"] for row in torques]
+    halves = [50.0 * (row["high"] - row["low"]) / row["predicted"] for row in every]
     assert summary["median_band"] == pytest.approx(np.median(halves))
     assert (summary["bearings"], summary["torques"]) == (len({row["bearing"] for row in fast}), len(fast))
     record = json.loads((ROOT / "trbdyn" / "data" / "torque_record.json").read_text(encoding="utf-8"))
@@ -111,7 +128,8 @@ def test_the_summary_follows_from_the_rows(kept: dict[str, Any]) -> None:
 
 def test_the_error_that_is_quoted_leaves_each_bearing_out(kept: dict[str, Any]) -> None:
     """By brute force: the supply of a bath that the other bearings give, from a straight line between two supplies."""
-    fast = [r for r in kept["results"] if "torque" in r["quantity"] and "by_supply" in r and r["speed_rpm"] >= 1000.0]
+    chosen = [row for row in kept["results"] if "by_supply" in row and not row["is_held_back"]]
+    fast = [row for row in chosen if row["speed_rpm"] >= 1000.0]
 
     def at(row: dict[str, Any], supply: float) -> float:
         low, high = row["by_supply"]
@@ -172,6 +190,9 @@ def test_the_default_is_judged_by_formulas_of_makers(kept: dict[str, Any]) -> No
     summary = kept["summary"]
     assert set(summary["formulas"]) == {"aihara", "skf", "palmgren"}
     assert all(one["low"] < one["median"] < one["high"] for one in summary["formulas"].values())
+    fast = [row for row in kept["results"] if "skf" in row and row["speed_rpm"] >= 1000.0]
+    for name, by in (("skf", lambda row: row["skf"]), ("aihara", lambda row: row["options"]["aihara, full supply"])):
+        assert summary["formulas"][name]["measured"] == pytest.approx(np.median([r["measured"] / by(r) for r in fast]))
     scene = trb.Scene(
         trb.Bearing.named("32208"), speed_rpm=1.0, axial_load=2000.0, lubricant=trb.lubricants.iso_vg(100, 40.0)
     )
@@ -189,16 +210,17 @@ def test_the_default_is_judged_by_formulas_of_makers(kept: dict[str, Any]) -> No
 def test_the_page_shows_these_rows(kept: dict[str, Any]) -> None:
     page = (ROOT / "docs" / "validation.md").read_text(encoding="utf-8")
     part = page.split("<!-- validation -->")[1].split("<!-- /validation -->")[0]
-    lines = [line for line in part.split("\n\n")[0].splitlines()[2:] if line.startswith("| ")]
-    lines = [line for line in lines if not line.startswith(("| bearing", "| ---"))]
+    head, _, *lines = [line for line in part.split("\n\n")[0].splitlines() if line.startswith("| ")]
+    names = [cell.strip() for cell in head.strip("|").split("|")]
     assert len(lines) == len(kept["results"])
     for line, row in zip(lines, kept["results"], strict=True):
-        cells = [cell.strip() for cell in line.strip("|").split("|")]
-        assert float(cells[4]) == pytest.approx(row["measured"], abs=0.06)
-        assert float(cells[5]) == pytest.approx(
+        cells = dict(zip(names, (cell.strip() for cell in line.strip("|").split("|")), strict=True))
+        assert float(cells["measured"]) == pytest.approx(row["measured"], abs=0.06)
+        assert float(cells["predicted"]) == pytest.approx(
             row["predicted"], abs=0.06 if row["quantity"] == "torque_change" else 0.006
         )
-        assert cells[7] == ("yes" if row["is_inside"] else "no")
+        assert cells["inside"] == ("yes" if row["is_inside"] else "no")
+        assert cells["held back"] == ("yes" if row["is_held_back"] else "")
     assert re.search(rf"`inside` {kept['summary']['inside']:.3g}", part)
 
 
@@ -211,7 +233,8 @@ def test_the_command(tmp_path: Path, kept: dict[str, Any]) -> None:
     assert done.returncode == 0, done.stderr
     found = json.loads(path.read_text(encoding="utf-8"))
     assert {"inside", "mean_error", "left_out_error", "median_band"} <= set(found["summary"])
-    before = {(row["quantity"], row["speed_rpm"], row["radial_load"]): row for row in kept["results"]}
+    parts = ("bearing", "quantity", "speed_rpm", "axial_load", "radial_load", "temperature_c")
+    before = {tuple(row[part] for part in parts): row for row in kept["results"]}
     for row in found["results"]:
-        there = before[row["quantity"], row["speed_rpm"], row["radial_load"]]
+        there = before[tuple(row[part] for part in parts)]
         assert row["predicted"] == pytest.approx(there["predicted"], rel=0.01)

@@ -135,7 +135,8 @@ def _power(subject: Subject) -> float:
 @cache
 def record() -> Mapping[str, Any]:
     """Summary of ``benchmarks/validation``, by the values of `DRAGS`: numbers of bearings and of torques, mean error over
-    bearings, the same with the supply of oil fitted without each bearing, largest error (%).
+    bearings, the same with the supply of oil fitted without each bearing, largest error, and by bearing the mean error at points
+    that no choice of the package was made with (%).
     """
     found: dict[str, Any] = json.loads((DATA / RECORD).read_text(encoding="utf-8"))
     return found
@@ -149,8 +150,9 @@ def record_words(effects: Effects) -> str:
     one = whole.get(DRAGS.get(effects.oil_fill, ""))
     if one is None or not (same and stated):
         return ""
+    apart = " and ".join(f"{error:.0f} % ({name})" for name, error in one["held_back"].items())
     return (
         f"on {one['bearings']} bearings these effects were {one['left_out_error']:.0f} % off {one['torques']} measured "
         f"torques in the mean over bearings, each left out of the fit of the oil's supply, {one['max_error']:.0f} % at most "
-        f"(from {whole['from_rpm']:g} rpm on)"
+        f"(from {whole['from_rpm']:g} rpm on), and {apart} off {one['held_back_torques']} others that no choice was made with"
     )

@@ -9,15 +9,9 @@ from typing import Final
 from trbdyn.base.validation import Model, Number
 from trbdyn.model.assembly import ShaftBearing, Subject
 from trbdyn.model.assumed import PROFILE_BAND
-from trbdyn.model.lubricants import REPLENISHMENT, ROLLING_SUPPLY, rolling_supply_of, supply_of
+from trbdyn.model.lubricants import REPLENISHMENT, ROLLING_SUPPLY, TEMPERATURES, rolling_supply_of, supply_of
 from trbdyn.model.scene import Scene
 
-TEMPERATURES: Final = {
-    "ring": (-3.0, 10.0, "of the ring: films are as warm or warmer, the thermocouple errs by 3 K: assumed"),
-    "film": (-3.0, 3.0, "of the films: assumed"),
-    "supply": (0.0, 25.0, "of the oil that is supplied: films are warmer: assumed"),
-}
-"""By what the temperature was measured on (`Lubricant.temperature_of`): how far films may be from it (K), and why."""
 RIB_LIMIT: Final = (0.1, 0.25)
 """Boundary friction at ribs: 0.1 (Sakaguchi and Harada 2006), 0.2 (Aihara 1987, Zhou and Hoeprich 1991, a maker's starting
 torques), a quarter more (assumed)."""

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from trbdyn.model.lubricants.lubricant import HIGHEST_TEMPERATURE_C as HIGHEST_TEMPERATURE_C
     from trbdyn.model.lubricants.lubricant import LOWEST_MEASURED_C as LOWEST_MEASURED_C
     from trbdyn.model.lubricants.lubricant import LOWEST_TEMPERATURE_C as LOWEST_TEMPERATURE_C
+    from trbdyn.model.lubricants.lubricant import TEMPERATURES as TEMPERATURES
     from trbdyn.model.lubricants.lubricant import Lubricant as Lubricant, Oil as Oil, PressureLaw as PressureLaw
     from trbdyn.model.lubricants.shipped import OILS as OILS, iso_vg as iso_vg
     from trbdyn.model.lubricants.shipped import vg32 as vg32, vg46 as vg46, vg68 as vg68, vg100 as vg100, vg150 as vg150

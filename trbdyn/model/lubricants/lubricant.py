@@ -25,6 +25,12 @@ LOWEST_TEMPERATURE_C: Final = -40.0
 LOWEST_MEASURED_C: Final = -20.0
 HIGHEST_TEMPERATURE_C: Final = 200.0
 """Temperatures (C) at which an oil is known: by ASTM D341, by a law of Vogel, and at most."""
+TEMPERATURES: Final = {
+    "ring": (-3.0, 10.0, "of the ring: films are as warm or warmer, the thermocouple errs by 3 K: assumed"),
+    "film": (-3.0, 3.0, "of the films: assumed"),
+    "supply": (0.0, 25.0, "of the oil that is supplied: films are warmer: assumed"),
+}
+"""By what the temperature was measured on (`Lubricant.temperature_of`): how far films may be from it (K), and why."""
 PressureLaw = Literal["dicke", "roelands", "barus"]
 
 

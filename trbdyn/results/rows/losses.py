@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from trbdyn.model.lubricants import TEMPERATURES
 from trbdyn.results import notes
 from trbdyn.results.number import Number, Seen
 
@@ -50,6 +51,12 @@ def _torque_note(seen: Seen) -> str | None:
 def _drag_share(seen: Seen) -> float | None:
     lost = sum(seen.power_split.values())
     return seen.power_split.get("drag", 0.0) / lost if lost > 0.0 else None
+
+
+def _oil_temperature(seen: Seen) -> str:
+    oil = seen.run.scene.lubricant
+    cooler, warmer, words = TEMPERATURES[oil.temperature_of]
+    return f"{oil.temperature_c:g} C {words.partition(':')[0]}, films from {cooler:+g} to {warmer:+g} K"
 
 
 def torque_by_loss(window: Result) -> dict[str, float]:
@@ -159,6 +166,17 @@ TORQUES: Final = (
 """Rows of torque, power loss and energy."""
 
 NOTES: Final = (
+    Number(
+        "oil_temperature",
+        "temperature that was given for the oil",
+        "",
+        "What `lubricant.temperature_c` was measured on (`temperature_of`), and how far films may be from it: films of the run "
+        "have this temperature, those of `trbdyn.uncertainty` the whole band.",
+        _oil_temperature,
+        "words",
+        "run",
+        exists=lambda seen: seen.run.scene.effects.films and seen.run.scene.lubricant.oil is not None,
+    ),
     Number(
         "torque_note",
         "Why the torques of the rings differ",
