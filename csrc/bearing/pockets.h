@@ -1,4 +1,4 @@
-/* Rows of pockets: their faces as a user gives them, checked, and where they stand. */
+/* Rows of pockets: their faces as a user gives them, checked, and their places. */
 #ifndef TRB_BEARING_POCKETS_H
 #define TRB_BEARING_POCKETS_H
 

@@ -4,7 +4,7 @@
 #include "base/variant.h"
 #include "contact/kernels.h"
 
-/* Numbers side by side, as compilers of C know them: left alone they take the loop over the modes instead, and shuffle. */
+/* Vectors of numbers in the notation of the compilers: without it they take the loop over the modes instead, and shuffle. */
 typedef double lanes __attribute__((vector_size(TRB_SHAPE_ROOM * sizeof(double))));
 
 static inline void add_times(const double *shape, double amplitude, lanes *sum)

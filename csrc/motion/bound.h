@@ -17,7 +17,7 @@ typedef struct trb_bound {
   double body[TRB_PLACE_OF_BODY];
 } trb_bound;
 
-/* How a ring stands off the bearing's axis, and how far it has moved since a bound was found. */
+/* How far a ring is off the bearing's axis, and how far it has moved since a bound was found. */
 typedef struct trb_ring_offset {
   double lean;            /* distance of its axis, a unit vector, from the bearing's */
   double aside;           /* of its reference point from the bearing's axis, m */

@@ -227,7 +227,7 @@ static void look_at_places(const trb_peak_look *p, const double *y, double *valu
 
 static int same(trb_vec3 a, trb_vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
-/* Whether a ring stands where it stood at the look before, and turns as fast. */
+/* Whether a ring has the place and speed of the evaluation before. */
 static int ring_rests(const trb_ring_pose *a, const trb_ring_pose *b)
 {
   return same(a->centre, b->centre) && same(a->axis, b->axis) && same(a->velocity, b->velocity) && same(a->omega, b->omega);

@@ -32,7 +32,7 @@ static double radius_of(const trb_system *system, int roller, const double *y)
   return system->model->geometry.roller_centre_radius + y[trb_state_roller(system, roller) + TRB_ROLLER_r];
 }
 
-/* What stands against a roller's tangential acceleration, times the radius of its orbit, kg m. */
+/* Inertia against a roller's tangential acceleration, times the radius of its orbit, kg m. */
 static double moment_of_mass(const trb_system *system, const trb_drive *drive, int roller, const double *y)
 {
   const double mass = trb_roller_orbit_mass(system->model, drive, roller, y + trb_state_roller(system, roller));

@@ -47,7 +47,7 @@ typedef struct trb_system {
   trb_layout       layout;
 } trb_system;
 
-/* Lays out the state of this system alone and checks what the builder has put together: every pair joins surfaces that its kind knows, and every mechanism by
+/* Lays out the state of this system alone and checks what the builder has put together: every pair joins surfaces that its kind takes, and every mechanism by
  * which it loses energy is booked as a loss that the state has. */
 trb_status trb_system_finish(trb_system *system, trb_message *message);
 
