@@ -10,8 +10,8 @@
 /* A step of a difference, by kind of entry, is small beside the scale on which the laws curve, micrometres of interference and a slip of 1e-4,
  * and large beside rounding. */
 static const double trb_difference[TRB_N_TOLERANCES] = {1e-10, 1e-8, 1e-7, 1e-5, 1.0};
-/* The frame R is turned by this angle for slopes over its turn, rad: a roller moves by about a micrometre with it, which is small beside its
- * orbit and large beside rounding. */
+/* The frame R is turned by this angle for slopes over its turn, rad: rollers move by as large a part of the radius of their orbit, some tenths of a
+ * micrometre in a bearing of the size of a hand, which is small beside what a load changes over and large beside rounding. */
 static const double trb_turn_difference = 1e-5;
 /* A turn of the frame R by this angle counts as one tolerance, rad, as positions and angles have tolerances of their own and the turn has none. */
 static const double trb_turn_tolerance = 1e-3;
