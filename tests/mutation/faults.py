@@ -33,6 +33,7 @@ AREAS: dict[str, tuple[float, list[str]]] = {
             "trbdyn/results/summary.py",
             "trbdyn/results/rows/*.py",
             "trbdyn/results/result.py",
+            "trbdyn/results/records.py",
             "trbdyn/results/peaks.py",
         ],
     ),

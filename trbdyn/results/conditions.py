@@ -10,7 +10,7 @@ import numpy as np
 from trbdyn.model.motion import History
 
 if TYPE_CHECKING:
-    from trbdyn.results.result import Result
+    from trbdyn.results.records import Records
 
 CHANGE: Final = 0.01
 """Share of the largest value by which a speed or a load changes before it is said."""
@@ -19,7 +19,7 @@ LOADS: Final = (("axial_load", "Fa"), ("radial_load", "Fr"))
 WORDS: Final = {"speed": "speed", "outer ring": "speed of the outer ring", "Fa": "axial load", "Fr": "radial load"}
 
 
-def ranges(result: Result) -> dict[str, tuple[float, float]]:
+def ranges(result: Records) -> dict[str, tuple[float, float]]:
     """Smallest and largest value over the records of speed and outer ring (rpm), of axial and radial load (N).
 
     Loads that are not prescribed are left out, and so is an outer ring at rest.
@@ -39,7 +39,7 @@ def ranges(result: Result) -> dict[str, tuple[float, float]]:
     return found
 
 
-def changes(result: Result) -> dict[str, tuple[float, float]]:
+def changes(result: Records) -> dict[str, tuple[float, float]]:
     """Those of `ranges` that change within the records."""
     return {
         name: (low, high)
@@ -48,7 +48,7 @@ def changes(result: Result) -> dict[str, tuple[float, float]]:
     }
 
 
-def words(result: Result) -> str | None:
+def words(result: Records) -> str | None:
     """What changes in a run, for a sentence; None where nothing does."""
     units = {"speed": "rpm", "outer ring": "rpm"}
     said = [

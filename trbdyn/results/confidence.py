@@ -24,7 +24,7 @@ from trbdyn.results.observables.uncertainty import LEAST_BATCHES, MOST_COSINES
 
 if TYPE_CHECKING:
     from trbdyn.results.number import Number
-    from trbdyn.results.result import Result
+    from trbdyn.results.records import Records
 
 Array = NDArray[np.float64]
 
@@ -38,9 +38,9 @@ SLOPE: Final = 0.04
 
 
 def confidence(
-    window: Result,
+    window: Records,
     rows: Iterable[Number],
-    average: Callable[[Result, Iterable[Number]], Mapping[str, Any]],
+    average: Callable[[Records, Iterable[Number]], Mapping[str, Any]],
     unsettled: str = "",
 ) -> tuple[dict[str, float] | None, str]:
     """Half widths of the confidence intervals of averages over a window, in their units, None where they cannot be told; and in
@@ -86,7 +86,7 @@ def confidence(
     )
 
 
-def _of_cage(window: Result, edges: Sequence[int]) -> float:
+def _of_cage(window: Records, edges: Sequence[int]) -> float:
     """How far the share of the losses that the cage has part in may be off: it goes with the cage's motion, so its rate and its
     scatter over the batches count.
     """
@@ -101,7 +101,7 @@ def _of_cage(window: Result, edges: Sequence[int]) -> float:
     return observables.mean_unknown([0.5 * (time[a] + time[b]) for a, b in pairwise(edges)], np.array(cage) / lost)
 
 
-def _batches(window: Result) -> tuple[list[int], float]:
+def _batches(window: Records) -> tuple[list[int], float]:
     """First records of batches of whole turns of the cage, with the last record, and the number of turns in all of them.
 
     Where the rollers stand or were not recorded, batches have one length and there are no turns.
@@ -119,7 +119,7 @@ def _batches(window: Result) -> tuple[list[int], float]:
     return _of_records(window), 0.0
 
 
-def _of_records(window: Result) -> list[int]:
+def _of_records(window: Records) -> list[int]:
     """First records of batches of one length, with the last record."""
     records = len(window)
     length = max(math.ceil((records - 1) / (2 * MOST_COSINES)), 2)

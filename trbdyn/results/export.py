@@ -18,7 +18,7 @@ from trbdyn.errors import InputError
 from trbdyn.results.sources import files_of
 
 if TYPE_CHECKING:
-    from trbdyn.results.result import Result
+    from trbdyn.results.records import Records
 
 Array = NDArray[np.float64]
 
@@ -28,7 +28,7 @@ TURNED: Final = np.array([1.0, -1.0, -1.0])
 
 
 def export(
-    result: Result | Mapping[str, Result],
+    result: Records | Mapping[str, Records],
     path: str | os.PathLike[str],
     *,
     assembly: Any = None,
@@ -37,11 +37,11 @@ def export(
     """Write a result for another program; see `Result.export`."""
     how: dict[str, Any] = {"overwrite": overwrite, "endings": tuple(WRITERS), "reads": files_of(result)}
     target = output_path(path, field="path", **how)  # before the records are read, which takes a while
-    bearings: Mapping[str, Result] = result if isinstance(result, Mapping) else {"": result}
+    bearings: Mapping[str, Records] = result if isinstance(result, Mapping) else {"": result}
     return write_whole(path, WRITERS[target.suffix.lower()](bearings, assembly), **how)
 
 
-def _csv(bearings: Mapping[str, Result], assembly: Any) -> bytes:
+def _csv(bearings: Mapping[str, Records], assembly: Any) -> bytes:
     """A row for each record and a column for each number, its unit behind its name."""
     columns: dict[str, Array] = {}
     for bearing, result in bearings.items():
@@ -64,7 +64,7 @@ def _csv(bearings: Mapping[str, Result], assembly: Any) -> bytes:
     return paper.getvalue().encode()
 
 
-def _matlab(bearings: Mapping[str, Result], assembly: Any) -> bytes:
+def _matlab(bearings: Mapping[str, Records], assembly: Any) -> bytes:
     """A structure for each bearing (``trbdyn`` of one alone) with a matrix for each field, time along its first dimension."""
     from scipy.io import savemat
 
@@ -86,7 +86,7 @@ def _matlab_name(name: str) -> str:
     return plain if plain[:1].isalpha() else f"trbdyn{'_' if plain else ''}{plain}"
 
 
-def _vtk(bearings: Mapping[str, Result], assembly: Any) -> bytes:
+def _vtk(bearings: Mapping[str, Records], assembly: Any) -> bytes:
     """Centres of rollers and cages as points that move in time, with their loads and forces: VTKHDF, PolyData with steps."""
     for bearing, result in bearings.items():
         for group in ("cage", "rollers", "contacts"):
@@ -117,7 +117,7 @@ def _seat(assembly: Any, bearing: str) -> tuple[Array, float]:
     return (TURNED if at.side > 0.0 else NOTHING), float(at.centre_plane)
 
 
-def _points(result: Result, number: int, seat: tuple[Array, float]) -> dict[str, Array]:
+def _points(result: Records, number: int, seat: tuple[Array, float]) -> dict[str, Array]:
     """Points, shape (T, Z + 1, 3), and what belongs to each, shape (T, Z + 1) or (T, Z + 1, 3); the last point is the cage."""
     geometry, records, rollers = result.scene.bearing.geometry, len(result), result.n_rollers
     signs, plane = seat
@@ -195,7 +195,7 @@ def _vtkhdf(time: Array, points: Array, data: Mapping[str, Array]) -> bytes:
     return paper.getvalue()
 
 
-WRITERS: Final[dict[str, Callable[[Mapping[str, Result], Any], bytes]]] = {
+WRITERS: Final[dict[str, Callable[[Mapping[str, Records], Any], bytes]]] = {
     ".csv": _csv,
     ".mat": _matlab,
     ".vtkhdf": _vtk,

@@ -20,7 +20,7 @@ from trbdyn.model.motion import History, values_of
 
 if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
-    from trbdyn.results.result import Result
+    from trbdyn.results.records import Records
 
 RINGS_DIFFER: Final = 0.01
 """Share by which the torques of the two rings may differ without a word."""
@@ -49,7 +49,7 @@ RANGES: Final = {
 numerical solution (docs/theory/lubrication.md#which-law-of-rolling-resistance)."""
 
 
-def load_groups(result: Result) -> np.ndarray[Any, np.dtype[np.float64]]:
+def load_groups(result: Records) -> np.ndarray[Any, np.dtype[np.float64]]:
     """The load group W of every roller's contact with a raceway that carries, at every record; needs the group contacts."""
     geometry, length = result.scene.bearing.geometry, result.scene.bearing.roller.effective_length
     groups = [
@@ -60,7 +60,7 @@ def load_groups(result: Result) -> np.ndarray[Any, np.dtype[np.float64]]:
     return found[found > 0.0]
 
 
-def rolling_note(result: Result) -> str | None:
+def rolling_note(result: Records) -> str | None:
     """What the law of rolling resistance is used for, in the part of a run that averages are taken of, that it was not made
     for; None where it is not. Needs the group contacts.
     """
@@ -71,7 +71,7 @@ def rolling_note(result: Result) -> str | None:
     return "; ".join(said) or None
 
 
-def _outside(result: Result) -> str:
+def _outside(result: Records) -> str:
     law, scene = result.scene.effects.rolling_law, result.scene
     (low, high), (thin, thick) = RANGES[law]
     said = []
@@ -103,7 +103,7 @@ def _tilted(scene: Scene) -> str:
     )
 
 
-def torque_note(window: Result, inner: float, outer: float) -> str | None:
+def torque_note(window: Records, inner: float, outer: float) -> str | None:
     """Why the friction torques on shaft and outer ring (N m) differ, in a sentence; None if they agree."""
     if abs(outer - inner) <= RINGS_DIFFER * max(abs(inner), abs(outer)):
         return None
@@ -132,7 +132,7 @@ def drop_band(peak: float) -> tuple[float, float]:
     return peak / factor, peak * factor
 
 
-def load_drops(window: Result) -> bool:
+def load_drops(window: Records) -> bool:
     """Whether the axial or the radial load changes in time and falls, within the window, below a share of its largest value."""
     scene, time = window.scene, window["time"]
     for load in (scene.axial_load, scene.radial_load):

@@ -19,7 +19,7 @@ from trbdyn.standards.sheet import Rating, sheet
 
 if TYPE_CHECKING:
     from trbdyn.results.peaks import Peaks
-    from trbdyn.results.result import Result
+    from trbdyn.results.records import Records
 
 Array = NDArray[np.float64]
 
@@ -86,7 +86,7 @@ class Number:
     exists: Callable[[Seen], bool] = lambda seen: True
     least: float = 0.0
     interval: Literal["", "motion", "load", "loss"] = ""
-    series: Callable[[Result], Array] | None = None
+    series: Callable[[Records], Array] | None = None
     grows: float = 2.0
     together: Literal["", "sum", "smallest", "same"] = ""
     shown: frozenset[Place] = NOWHERE
@@ -115,21 +115,21 @@ class Seen:
 
     Parameters
     ----------
-    run : Result
+    run : Records
         All records.
-    window : Result, optional
+    window : Records, optional
         Those that averages are of; by default those after the transient, the second half of the run at least.
     averages : sequence of Number
         Rows with confidence intervals.
     """
 
-    def __init__(self, run: Result, window: Result | None = None, averages: Iterable[Number] = ()) -> None:
+    def __init__(self, run: Records, window: Records | None = None, averages: Iterable[Number] = ()) -> None:
         self.run = run
         self._window = window
         self._averages = tuple(averages)
 
     @classmethod
-    def part(cls, window: Result) -> Self:
+    def part(cls, window: Records) -> Self:
         """Records that are run and window both."""
         return cls(window, window)
 
@@ -155,7 +155,7 @@ class Seen:
         return "the groups cage and rollers were not recorded" if self.settling is None else self.settling.reason
 
     @cached_property
-    def window(self) -> Result:
+    def window(self) -> Records:
         """Records that averages are of."""
         if self._window is not None:
             return self._window
@@ -204,13 +204,13 @@ class Seen:
         return steady_sheet(self.run)
 
 
-def part_values(part: Result, rows: Iterable[Number]) -> dict[str, Any]:
+def part_values(part: Records, rows: Iterable[Number]) -> dict[str, Any]:
     """Numbers of some rows, which the run has, over a part of its records."""
     seen = Seen.part(part)
     return {row.name: row.value(seen) for row in rows}
 
 
-def steady_sheet(result: Result) -> Rating | None:
+def steady_sheet(result: Records) -> Rating | None:
     """The engineer's sheet (`trbdyn.rating`) of a scene whose speed and loads are constant; its equilibrium takes some 10 ms.
 
     None where they change, and of a bearing on a shaft, whose scene has no loads: there the records make the sheet.

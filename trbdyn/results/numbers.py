@@ -11,7 +11,7 @@ the row (``torque_by_loss_rolling``), and the half width of a confidence interva
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar
 
 from trbdyn.errors import InputError, unknown_name
 from trbdyn.results.confidence import confidence
@@ -19,7 +19,9 @@ from trbdyn.results.number import Number, Place, Seen, part_values
 from trbdyn.results.rows import cage, contacts, losses, ratings, run
 
 if TYPE_CHECKING:
-    from trbdyn.results.result import Result
+    from trbdyn.results.records import Records
+
+R = TypeVar("R", bound="Records")
 
 TABLE: Final[dict[str, Number]] = {
     row.name: row
@@ -124,30 +126,30 @@ def of_picture(name: str) -> list[Number]:
     return [row for row in TABLE.values() if name in row.pictures]
 
 
-def drawn_of(name: str, result: Result, window_start: float | None) -> Result:
+def drawn_of(name: str, result: R, window_start: float | None) -> R:
     """Records that a picture is drawn of: those of the averages where it tells numbers of the window, else all."""
     told = of_picture(name)
     of_window = told and all(row.of == "window" for row in told)
     return result.window(window_start) if of_window and window_start is not None else result
 
 
-def look(result: Result) -> Seen:
+def look(result: Records) -> Seen:
     """The records of a run, from which rows are computed."""
     return Seen(result, averages=averages().values())
 
 
-def values(part: Result, names: Iterable[str]) -> dict[str, Any]:
+def values(part: Records, names: Iterable[str]) -> dict[str, Any]:
     """Numbers over a part of the records that is run and window both, by their names; None where it does not have them."""
     return part_values(part, [TABLE[name] for name in names])
 
 
-def all_averages(window: Result) -> dict[str, Any]:
+def all_averages(window: Records) -> dict[str, Any]:
     """Every number of the window that needs no more than its records, by its name; None where it does not have it."""
     seen = Seen.part(window)
     return {row.name: seen.value(row) for row in rows() if row.of == "window" and row.name not in ABOUT}
 
 
-def half_widths(window: Result) -> dict[str, float]:
+def half_widths(window: Records) -> dict[str, float]:
     """Half widths of the confidence intervals of the averages over a window whose motion has settled, as far as known."""
     seen = Seen.part(window)
     given = [row for row in averages().values() if not row.why_not(seen)]

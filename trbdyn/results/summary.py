@@ -26,7 +26,7 @@ from trbdyn.results import numbers
 from trbdyn.standards.sheet import life_text
 
 if TYPE_CHECKING:
-    from trbdyn.results.result import Result
+    from trbdyn.results.records import Records
 
 NOTES: Final = "_note"
 """End of the names of sentences, which stand below a table."""
@@ -55,12 +55,12 @@ class Summary(dict[str, Any], Displayed):
         return shown(self)
 
 
-def summary(result: Result) -> Summary:
+def summary(result: Records) -> Summary:
     """Summarise a run.
 
     Parameters
     ----------
-    result : Result
+    result : Records
         The run.
 
     Returns

@@ -10,7 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     import xarray
 
-    from trbdyn.results.result import Result
+    from trbdyn.results.records import Records
 
 LABELS: Final = {dim: list(dim) for dim in ("xyz", "xy", "wxyz")}
 """Labels of the dimensions that have names."""
@@ -31,7 +31,7 @@ def dataset(result: Any) -> xarray.Dataset:
     return xarray.Dataset(variables, coords=coordinates, attrs=attributes)
 
 
-def _fields(part: Result, before: str) -> tuple[dict[str, Any], dict[str, Any]]:
+def _fields(part: Records, before: str) -> tuple[dict[str, Any], dict[str, Any]]:
     """Variables and coordinates of a bearing; dimensions that bearings have by themselves begin with its name."""
 
     def own(dims: tuple[str, ...]) -> tuple[str, ...]:

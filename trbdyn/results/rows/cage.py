@@ -17,7 +17,7 @@ from trbdyn.results.number import Number, Seen
 from trbdyn.results.rows.contacts import extreme
 
 if TYPE_CHECKING:
-    from trbdyn.results.result import Result
+    from trbdyn.results.records import Records
 
 Array = NDArray[np.float64]
 
@@ -61,20 +61,20 @@ def _distance(seen: Seen) -> Array:
     return seen.distance
 
 
-def orbit_as_mean(window: Result) -> Array:
+def orbit_as_mean(window: Records) -> Array:
     """A series whose mean changes as the root mean square of the orbit, to first order."""
     orbit = window.orbit_radius_over_cpr
     size = math.sqrt(float(np.mean(orbit**2)))
     return 0.5 * (orbit**2 / size + size) if size > 0.0 else orbit
 
 
-def orbit_percentile(share: float, window: Result) -> Array:
+def orbit_percentile(share: float, window: Records) -> Array:
     """The same for a percentile of the orbit."""
     place = window["cage_position"][:, :2] / window.clearances.radial
     return percentile_as_mean(window.orbit_radius_over_cpr, share, place - place.mean(axis=0))
 
 
-def distance_percentile(share: float, window: Result) -> Array:
+def distance_percentile(share: float, window: Records) -> Array:
     """The same for a percentile of the distance from the bearing axis."""
     return percentile_as_mean(window.axis_distance_over_cpr, share, None)
 

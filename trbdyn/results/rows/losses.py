@@ -11,10 +11,10 @@ from trbdyn.results import notes
 from trbdyn.results.number import Number, Seen
 
 if TYPE_CHECKING:
-    from trbdyn.results.result import Result
+    from trbdyn.results.records import Records
 
 
-def shaft_torque(window: Result) -> float:
+def shaft_torque(window: Records) -> float:
     """Mean friction torque of the shaft (N m): the work of both rings' drives over the turn between the rings, which records
     between impacts do not alias.
 
@@ -31,7 +31,7 @@ def shaft_torque(window: Result) -> float:
     return float((window["work_shaft"][-1] - window["work_shaft"][0]) / abs(rolled[-1] - rolled[0]))
 
 
-def mean_loss(window: Result) -> float:
+def mean_loss(window: Records) -> float:
     """Mean power loss (W): energy lost over time, which records between impacts do not alias; of the records without it."""
     if "energy" not in window.groups or len(window) < 2:
         return float(window["power_loss"].mean())
@@ -59,7 +59,7 @@ def _oil_temperature(seen: Seen) -> str:
     return f"{oil.temperature_c:g} C {words.partition(':')[0]}, films from {cooler:+g} to {warmer:+g} K"
 
 
-def torque_by_loss(window: Result) -> dict[str, float]:
+def torque_by_loss(window: Records) -> dict[str, float]:
     """Torque of the shaft by what loses it (N m), and as 'not lost' what is left to the torque: energy that parts store or give
     back meanwhile, work of loads, and what records between impacts miss.
     """
@@ -72,7 +72,7 @@ def torque_by_loss(window: Result) -> dict[str, float]:
     return found
 
 
-def torque_by_force(window: Result) -> dict[str, float]:
+def torque_by_force(window: Records) -> dict[str, float]:
     """Mean torque of each force on the inner ring (N m), and as 'between records' what is left to the torque."""
     found = dict(window.torque_split)
     torque = shaft_torque(window)
