@@ -3,6 +3,9 @@
 Circles: no modules import each other in a circle, not even through an import inside of a function. Imports for type checkers do
 not run and do not count.
 
+Knots: modules of which each needs each other, where imports for type checkers count, too. None is larger, and none is elsewhere,
+than KNOTS says; what is untied is taken out of the table.
+
 Late imports: an import stands at the top of its file. Inside of a function stand only those that would make every start slow, or
 need a package that is optional: the packages of HEAVY, the modules of the package that load them, and what commands need
 (trbdyn/cli).
@@ -15,9 +18,13 @@ import ast
 import sys
 from collections.abc import Iterator
 from graphlib import CycleError, TopologicalSorter
+from itertools import takewhile
 from pathlib import Path
 
 import grimp
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = "trbdyn"
@@ -57,6 +64,15 @@ LOAD_HEAVY = (
     "trbdyn.extras.maps.slip_picture",
     "trbdyn.extras.maps.torque_picture",
 )
+KNOTS = {
+    "trbdyn.model": (25,),
+    "trbdyn.run": (9,),
+    "trbdyn.results": (2, 2),
+    "trbdyn.extras.app": (3,),
+    "trbdyn.extras.design": (2,),
+    "trbdyn.extras.design.planning": (2,),
+}
+"""Sizes of the knots by the folder that holds them."""
 COMMANDS = ("trbdyn/cli/",)
 MODELS = ("trbdyn/model/",)
 
@@ -69,6 +85,28 @@ def circle(package: str) -> list[str]:
     except CycleError as error:
         return list(error.args[1])[::-1]
     return []
+
+
+def knots(package: str) -> dict[str, tuple[int, ...]]:
+    """Sizes of the knots by the folder that holds them, the largest first; without the package's own file, which names all."""
+    graph = grimp.build_graph(package, cache_dir=None)
+    modules = sorted(graph.modules - {package})
+    places = {module: place for place, module in enumerate(modules)}
+    pairs = [
+        (places[one], places[other])
+        for one in modules
+        for other in graph.find_modules_directly_imported_by(one)
+        if other in places
+    ]
+    arrows = coo_array((np.ones(len(pairs)), tuple(zip(*pairs, strict=True))), shape=(len(modules),) * 2)
+    _, labels = connected_components(arrows, connection="strong")
+    found: dict[str, list[int]] = {}
+    for label, size in enumerate(np.bincount(labels)):
+        if size > 1:
+            inside = [module.split(".") for module, own in zip(modules, labels, strict=True) if own == label]
+            common = [parts[0] for parts in takewhile(lambda parts: len(set(parts)) == 1, zip(*inside, strict=False))]
+            found.setdefault(".".join(common), []).append(int(size))
+    return {folder: tuple(sorted(sizes, reverse=True)) for folder, sizes in found.items()}
 
 
 def late_imports(tree: ast.AST) -> Iterator[tuple[int, str]]:
@@ -99,6 +137,10 @@ def below(module: str, tops: tuple[str, ...]) -> bool:
 def main() -> int:
     found = circle(PACKAGE)
     breaches = [f"imports run in a circle: {' -> '.join(found)}"] if found else []
+    if (tied := knots(PACKAGE)) != KNOTS:
+        breaches.append(
+            f"knots of imports are {tied}, and KNOTS says {KNOTS}: untie what is new, take out what is gone"
+        )
     for path in sorted((ROOT / PACKAGE).rglob("*.py")):
         name, tree = path.relative_to(ROOT).as_posix(), ast.parse(path.read_text(encoding="utf-8"))
         for line in () if name.startswith(MODELS) else looks_for_assemblies(tree):

@@ -8,6 +8,7 @@ import importlib
 import importlib.util
 import json
 import pickle
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -225,6 +226,19 @@ def test_a_circle_of_imports_is_found(tmp_path: Path, monkeypatch: pytest.Monkey
 
 def test_imports_run_in_no_circle() -> None:
     assert load_rules().circle("trbdyn") == []
+
+
+def test_the_page_on_design_tells_the_knots_of_types() -> None:
+    """`make lint` holds the table against the imports."""
+    sizes = load_rules().KNOTS
+    page = (ROOT / "docs" / "design.md").read_text(encoding="utf-8")
+    told = re.search(r"There are knots of (.*?) and (\w+) of two;", page, re.DOTALL)
+    assert told is not None
+    large = {
+        "trbdyn." + place.replace("/", "."): int(n) for n, place in re.findall(r"(\d+)[^,`]* in `([\w/]+)/`", told[1])
+    }
+    assert large == {folder: own[0] for folder, own in sizes.items() if own[0] > 2}
+    assert told[2] == {4: "four", 3: "three", 2: "two"}[sum(own.count(2) for own in sizes.values())]
 
 
 def test_files_hold_the_version_that_the_package_has() -> None:
