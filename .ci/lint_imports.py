@@ -67,7 +67,7 @@ LOAD_HEAVY = (
 KNOTS = {
     "trbdyn.model": (25,),
     "trbdyn.run": (9,),
-    "trbdyn.results": (2, 2),
+    "trbdyn.results": (2,),
     "trbdyn.extras.app": (3,),
     "trbdyn.extras.design": (2,),
     "trbdyn.extras.design.planning": (2,),

@@ -23,12 +23,13 @@ import trbdyn
 import trbdyn as trb
 from trbdyn.cli import main, make_parser
 from trbdyn.extras.elastic.modes import CageModes
+from trbdyn.extras.sound import forces
 from trbdyn.extras.study import gather
 from trbdyn.extras.study.answer import Answer
 from trbdyn.model.cases import paper_30310
 from trbdyn.plot import animation
 from trbdyn.reporting import save_pdf
-from trbdyn.results import forces, summary
+from trbdyn.results import summary
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.export import export
 from trbdyn.viewer import View, save_gltf
@@ -98,7 +99,7 @@ WRITERS: dict[str, tuple[str, Callable[..., Any]]] = {
         "a.h5",
         lambda run, path, **how: cage_modes().save(path, **how),
     ),
-    "trbdyn.results.forces.sound": (
+    "trbdyn.extras.sound.forces.sound": (
         "a.wav",
         lambda run, path, **how: forces.sound(run, path, "cage", "x", None, 1.0, **how),
     ),

@@ -351,7 +351,8 @@ class Derived(ABC):
         InputError
             If an argument is not allowed, a group was not saved, or records are uneven or too far apart for the force.
         """
-        return forces.force_spectrum(self, on, along, segments)
+        find: Callable[..., forces.ForceSpectrum] = of_extras("force_spectrum")
+        return find(self, on, along, segments)
 
     def octave_levels(
         self, on: forces.On = "cage", along: forces.Along = "x", *, fraction: Literal[1, 3] = 3
@@ -372,7 +373,8 @@ class Derived(ABC):
         ImportError
             If the extra is not installed.
         """
-        return forces.octave_levels(self, on, along, fraction)
+        find: Callable[..., forces.OctaveLevels] = of_extras("octave_levels")
+        return find(self, on, along, fraction)
 
     def sound(
         self,
@@ -406,12 +408,14 @@ class Derived(ABC):
         FileError
             If the file is there and shall not be replaced, or cannot be written.
         """
-        return forces.sound(self, path, on, along, full_scale, slower, overwrite)
+        write: Callable[..., forces.Sound] = of_extras("sound")
+        return write(self, path, on, along, full_scale, slower, overwrite)
 
     @property
     def rattle(self) -> forces.Rattle:
         """How often rollers hit the cage and how hard, between the records too; needs the group peaks."""
-        return forces.rattle(self)
+        find: Callable[..., forces.Rattle] = of_extras("rattle")
+        return find(self)
 
     def _starting(self, prefix: str) -> dict[str, Array]:
         return {field.name: self[field.name] for field in self.fields if field.name.startswith(prefix)}

@@ -1,0 +1,1 @@
+"""Forces on cage and outer ring over frequency, as levels of octaves and as sound; rattle of the cage (``trbdyn[sound]``)."""
