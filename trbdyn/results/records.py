@@ -33,7 +33,7 @@ class Records(Derived):
     source : Source
         Where the fields come from.
     info : RunInfo
-        What is known of the run besides.
+        Settings, length and messages of the run.
     scene : Scene, optional
         The scene; by default it is made from ``info.scene`` when first asked for.
     """
