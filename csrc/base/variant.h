@@ -15,6 +15,17 @@
 #define TRB_LANES
 #endif
 
+/* Numbers side by side, as many as a register of the instruction set holds. Compilers take vectors of more numbers apart by way of the memory, which costs
+ * several times the sums themselves. */
+#if defined(__AVX512F__)
+#define TRB_WIDE 8
+#elif defined(__AVX__)
+#define TRB_WIDE 4
+#else
+#define TRB_WIDE 2
+#endif
+typedef double trb_wide __attribute__((vector_size(TRB_WIDE * sizeof(double))));
+
 /* Variants that were built, slowest first: X(name). */
 #ifdef TRB_HAVE_AVX2
 #define TRB_AVX2(X) X(avx2)

@@ -166,50 +166,38 @@ static inline void add_product(const double (*columns)[TRB_NP], int n, const dou
   for (int i = 0; i < TRB_NP; i++) to[i] = sum[i];
 }
 
-/* A part of a column, as compilers of C know numbers side by side: where the number of columns is not known to them they would take the loop
- * over the columns instead, and shuffle. */
-typedef double eight __attribute__((vector_size(8 * sizeof(double))));
-typedef double four __attribute__((vector_size(4 * sizeof(double))));
+/* A part of a column as numbers side by side: where the number of columns is not known to compilers they would take the loop over the columns
+ * instead, and shuffle. */
+enum { QUARTET = TRB_WIDE < 4 ? TRB_WIDE : 4, QUARTETS = TRB_NP / QUARTET };
+typedef double quartet __attribute__((vector_size(QUARTET * sizeof(double))));
 typedef struct column_sum {
-  eight first;
-  four  last;
+  quartet part[QUARTETS];
 } column_sum;
 
-_Static_assert(TRB_NP == 12, "a part of a column has eight entries and four");
-
-static inline void get_column(const double *from, column_sum *to)
-{
-  memcpy(&to->first, from, sizeof to->first);
-  memcpy(&to->last, from + 8, sizeof to->last);
-}
-
-static inline void put_column(const column_sum *from, double *to)
-{
-  memcpy(to, &from->first, sizeof from->first);
-  memcpy(to + 8, &from->last, sizeof from->last);
-}
+_Static_assert(TRB_NP % QUARTET == 0, "a part of a column is whole vectors");
 
 static inline void add_column(const double *column, double factor, column_sum *sum)
 {
-  column_sum own;
-  get_column(column, &own);
-  sum->first += factor * own.first;
-  sum->last += factor * own.last;
+  for (int k = 0; k < QUARTETS; k++) {
+    quartet own;
+    memcpy(&own, column + k * QUARTET, sizeof own);
+    sum->part[k] += factor * own;
+  }
 }
 
 /* The same for a part of the columns of a hub, which are `room` apart. */
 static inline void add_part(const double *restrict columns, int room, int n, const double *restrict x, double scale, double *restrict to)
 {
-  column_sum even, odd = {{0}, {0}}; /* one sum alone would wait for each of its additions */
+  column_sum even, odd = {0}; /* one sum alone would wait for each of its additions */
   int        c = 0;
-  get_column(to, &even);
+  memcpy(&even, to, sizeof even);
   for (; c + 2 <= n; c += 2, columns += 2 * room) {
     add_column(columns, scale * x[c], &even);
     add_column(columns + room, scale * x[c + 1], &odd);
   }
   if (c < n) add_column(columns, scale * x[c], &even);
-  even.first += odd.first, even.last += odd.last;
-  put_column(&even, to);
+  for (int k = 0; k < QUARTETS; k++) even.part[k] += odd.part[k];
+  memcpy(to, &even, sizeof even);
 }
 
 /* Entries of a part, which may end beyond those of the hub. */
@@ -269,9 +257,9 @@ static int invert_wide(int n, int room, double *restrict a, double *restrict row
       if (i == c) continue;
       for (int k = 0; k < room; k += TRB_NP) {
         column_sum part;
-        get_column(other + k, &part);
+        memcpy(&part, other + k, sizeof part);
         add_column(row + k, -m, &part);
-        put_column(&part, other + k);
+        memcpy(other + k, &part, sizeof part);
       }
       other[c] = -m * per;
     }
@@ -380,31 +368,32 @@ static void follow(const double *restrict value, const double (*restrict slope)[
   memcpy(flow, sum, sizeof sum);
 }
 
-enum { EIGHTS = TRB_TANGENT_OUT / 8 };
-_Static_assert(TRB_TANGENT_OUT % 8 == 0 && TRB_RING_OUT == 8, "flows and reactions are whole vectors");
+enum { FLOW_PARTS = TRB_TANGENT_OUT / TRB_WIDE, REACTION_PARTS = TRB_RING_OUT / TRB_WIDE };
+_Static_assert(TRB_TANGENT_OUT % TRB_WIDE == 0 && TRB_RING_OUT % TRB_WIDE == 0, "flows and reactions are whole vectors");
 
-static inline void add_eight(const double *column, double factor, eight *sum)
+static inline void add_wide(const double *column, double factor, int n, trb_wide *sum)
 {
-  eight own;
-  memcpy(&own, column, sizeof own);
-  *sum += factor * own;
+  for (int k = 0; k < n; k++) {
+    trb_wide own;
+    memcpy(&own, column + k * TRB_WIDE, sizeof own);
+    sum[k] += factor * own;
+  }
 }
 
 static void follow_ring(const trb_ring_slopes *restrict slopes, const double *restrict value, const double *restrict step,
                         const double *restrict of_ring, const double *restrict least, double *restrict flow, double *restrict reaction)
 {
-  eight  sum[EIGHTS], even = {0}, odd = {0};
-  double changed[TRB_TANGENT_OUT];
+  trb_wide sum[FLOW_PARTS], even[REACTION_PARTS], odd[REACTION_PARTS] = {{0}};
+  double   changed[TRB_TANGENT_OUT];
   memcpy(sum, flow, sizeof sum);
-  for (int c = 0; c < TRB_RING_IN; c++)
-    for (int k = 0; k < EIGHTS; k++) add_eight(slopes->flow[c] + 8 * k, of_ring[c], &sum[k]);
-  memcpy(&even, value, sizeof even);
-  for (int c = 0; c < TRB_TANGENT_IN; c++) add_eight(slopes->reaction[c], step[c], c % 2 == 0 ? &even : &odd);
-  for (int c = 0; c < TRB_RING_IN; c++) add_eight(slopes->reaction[TRB_TANGENT_IN + c], of_ring[c], c % 2 == 0 ? &even : &odd);
-  even += odd;
+  for (int c = 0; c < TRB_RING_IN; c++) add_wide(slopes->flow[c], of_ring[c], FLOW_PARTS, sum);
+  memcpy(even, value, sizeof even);
+  for (int c = 0; c < TRB_TANGENT_IN; c++) add_wide(slopes->reaction[c], step[c], REACTION_PARTS, c % 2 == 0 ? even : odd);
+  for (int c = 0; c < TRB_RING_IN; c++) add_wide(slopes->reaction[TRB_TANGENT_IN + c], of_ring[c], REACTION_PARTS, c % 2 == 0 ? even : odd);
+  for (int k = 0; k < REACTION_PARTS; k++) even[k] += odd[k];
   memcpy(changed, sum, sizeof changed);
   for (int i = 0; i < TRB_TANGENT_OUT; i++) flow[i] = trb_max(changed[i], least[i]);
-  memcpy(reaction, &even, sizeof even);
+  memcpy(reaction, even, sizeof even);
 }
 
 static void weigh(const double *restrict relative, const double *restrict scale, const double *restrict y, int n, double *restrict weights)
