@@ -1,6 +1,6 @@
 """What each effect costs and does: every effect of the scene alone off, and alone on.
 
-    python benchmarks/effects.py [--quick] [--json FILE]
+    python benchmarks/effects.py [--quick | --without] [--json FILE]
 
 Alone off: all effects but one, from states of a whirling cage in the middle of a collision: time, evaluations, and
 what the effect changes in cage speed, whirl and torque. Alone on: that effect alone beside normal contact at the
@@ -13,6 +13,8 @@ turns. ``evaluations_off`` sums the effect's counters over a run without it. Eff
 one of two loops (pocket faces, the rib's film, planar motion) have no code of their own to leave out, and no ratio.
 ``instructions_off`` and ``instructions_on`` are counted by callgrind, so that what else the machine does is not in them. An
 effect that is off in the scene of all others (a film in the pockets, drag, a housing) is added to it, and its "all" is with it.
+``--without`` gives ``instructions_ratio_off`` alone: instructions of a core in which an effect is off over those of one without
+its code.
 """
 
 from __future__ import annotations
@@ -30,7 +32,7 @@ import numpy as np
 from accuracy import measure, states
 from effect_cost.build import BuildError, Builds
 from effect_cost.catalogue import EFFECTS, EVERYTHING, NOTHING, Effect
-from effect_cost.instructions import CannotCount, counted, described
+from effect_cost.instructions import MANY, VARIANT, CannotCount, counted, described
 
 from trbdyn import Scene, Simulation, Start, TrbError
 from trbdyn.model.effects import Effects
@@ -82,7 +84,7 @@ class Plan:
 
 FULL = Plan(5, 10.0, 41, None)
 QUICK = Plan(2, 1.0, 15, None)
-SMOKE = Plan(1, 0.1, 3, ("thermal",), ("thermal", "gravity"), counted=False)
+SMOKE = Plan(1, 0.1, 3, (), ("thermal", "gravity"), counted=False)
 
 
 def scene_with(case: states.Case, effects: Effects) -> Scene:
@@ -122,10 +124,21 @@ class Evaluation:
         return self._core.derivative(0.0, self._vector)
 
 
-def ratio_of(with_code: Evaluation, without: Evaluation, rounds: int) -> float:
-    """Ratio of the fastest loops, taken in turns."""
+def check_alike(with_code: Evaluation, without: Evaluation) -> None:
+    """Without the effect both cores give the same forces.
+
+    Raises
+    ------
+    BuildError
+        If not.
+    """
     if not np.allclose(with_code(), without(), rtol=1e-9, atol=1e-9):
         raise BuildError("the core without the code gives other forces: more than the effect was taken out")
+
+
+def ratio_of(with_code: Evaluation, without: Evaluation, rounds: int) -> float:
+    """Ratio of the fastest loops, taken in turns."""
+    check_alike(with_code, without)
     fastest = [float("inf")] * 2
     for _ in range(rounds):
         for place, one in enumerate((with_code, without)):
@@ -164,24 +177,51 @@ def counted_without(case: states.Case, effect: Effect, cores: Sequence[ModuleTyp
     for core in cores:
         with tempfile.TemporaryDirectory() as folder:
             try:
-                found.append(counted([scene, scene], Path(folder), Path(str(core.__file__)))[-1])
+                found.append(counted([scene, scene], Path(folder), Path(str(core.__file__)), MANY)[-1])
             except CannotCount:
                 return None
     return found[0] / found[1]
+
+
+def with_code_to_take_out(plan: Plan) -> list[Effect]:
+    """Effects that a core is built without."""
+    wanted = [effect for effect in EFFECTS if effect.patch is not None]
+    return [effect for effect in wanted if plan.built is None or effect.name in plan.built]
+
+
+def without(case: states.Case, report: common.Report) -> None:
+    """Rows of instructions alone: an effect that is off, over a core without its code."""
+    whole_scene, vector = scene_with(case, EVERYTHING), case.states[0].vector
+    with tempfile.TemporaryDirectory() as folder:
+        builds = Builds(Path(folder), (VARIANT,))
+        whole = builds.whole()
+        for effect in with_code_to_take_out(FULL):
+            assert effect.patch is not None
+            core, off = builds.without(effect.name, effect.patch), effect.switched_off(whole_scene)
+            check_alike(*(Evaluation(one, off, vector, VARIANT) for one in (whole, core)))
+            counters = counters_of(off, case.states[0], QUICK)
+            report.add(
+                effect=effect.name,
+                text=effect.text,
+                instructions_ratio_off=counted_without(case, effect, (whole, core), FULL),
+                evaluations_off=sum(counters[name] for name in effect.counters),
+            )
+            print(
+                common.table(report.results[-1:], ("effect", "instructions_ratio_off", "evaluations_off")), flush=True
+            )
 
 
 def ratios(case: states.Case, plan: Plan, report: common.Report) -> dict[str, dict[str, float | None]]:
     """time_ratio_off and instructions_ratio_off of every effect that a core can be built without."""
     out: dict[str, dict[str, float | None]] = {}
     variant = Simulation(case.scene).instruction_set
-    wanted = [effect for effect in EFFECTS if effect.patch is not None]
-    wanted = [effect for effect in wanted if plan.built is None or effect.name in plan.built]
+    wanted = with_code_to_take_out(plan)
     if not wanted:
         return out
     vector = case.states[0].vector
     with tempfile.TemporaryDirectory() as folder:
         try:
-            builds = Builds(Path(folder), variant)
+            builds = Builds(Path(folder), (variant, VARIANT))
             whole = builds.whole()
         except BuildError as error:
             report.notes.append(f"No core was built, so there is no time_ratio_off: {error}.")
@@ -343,7 +383,15 @@ def draw(report: common.Report) -> Any:
 
 def main(arguments: Sequence[str] | None = None) -> common.Report:
     parser = common.parser(__doc__)
+    parser.add_argument(
+        "--without", action="store_true", help="instructions beside cores without an effect's code alone"
+    )
     options = parser.parse_args(arguments)
+    if options.without:
+        report = common.Report("effects", options, COLUMNS)
+        without(states.load_case("collision").first(1), report)
+        report.finish()
+        return report
     report = run(SMOKE if options.smoke else QUICK if options.quick else FULL, options)
     report.readme = text_of(report)
     print(report.readme)

@@ -52,14 +52,6 @@ def paper() -> trb.Scene:
     return Point(FIGURES["12a"][-1], "whirl").scene()
 
 
-def combined() -> trb.Scene:
-    """A point of the paper's figure 16a, with the loaded zone where rollers descend."""
-    from paper.points import FIGURES, Point
-    from paper.statements import NAMED
-
-    return Point(FIGURES["16a"][1].within(NAMED), "equal", 1).scene()
-
-
 def campaign() -> dict[str, float]:
     """What the picture of the paper's statements is drawn from."""
     from paper.overview import kept
@@ -178,13 +170,26 @@ def statements(path: Path) -> None:
     draw(path)
 
 
-def loci(path: Path) -> None:
-    """The cage's locus under combined load with the named set of inputs; minutes."""
-    words = ["--starts", "equal", "--directions", "180", "--scatters", "0.2", "--seeds", "1", "--max-time", "3"]
-    with tempfile.TemporaryDirectory() as folder:
-        command = [sys.executable, "paper", "-o", folder, *words, "--points", "*_4930N_*N_180deg_scatter0.2um"]
-        subprocess.run(command, cwd=ROOT / "benchmarks", check=True)
-        path.write_bytes((Path(folder) / "figures" / "fig_11a_16a.png").read_bytes())
+CURVES: Final = {"paper_16a": "fig_11a_16a"} | {
+    f"paper_{name}": f"fig_{name}" for name in ("09", "10", "13", "14", "15", "17", "18")
+}
+"""Pictures of the paper's figures with the named set of inputs."""
+CAMPAIGN: Final = ROOT / "build" / "paper"
+"""Their points, which are kept for the next picture."""
+
+
+def curves(name: str, path: Path) -> None:
+    """One of them; points that were not run yet take minutes."""
+    from paper.curves import draw
+
+    draw(CURVES[name], path, CAMPAIGN)
+
+
+def of_curves(name: str) -> trb.Scene:
+    """The last scene of such a picture."""
+    from paper.curves import points_of
+
+    return points_of(CURVES[name])[-1].scene()
 
 
 PICTURES: Final[dict[str, tuple[Callable[[Path], None], Callable[[], dict[str, float]]]]] = {
@@ -197,7 +202,10 @@ PICTURES: Final[dict[str, tuple[Callable[[Path], None], Callable[[], dict[str, f
     "benchmarks/pictures/work_precision.png": (benchmark("work_precision.py"), partial(numbers, scene, COST)),
     "benchmarks/pictures/rolling_laws.png": (benchmark("rolling_laws.py"), laws),
     "docs/pictures/paper_statements.png": (statements, campaign),
-    "docs/pictures/paper_16a.png": (loci, partial(numbers, combined, MOTION)),
+    **{
+        f"docs/pictures/{name}.png": (partial(curves, name), partial(numbers, partial(of_curves, name), MOTION))
+        for name in CURVES
+    },
     "benchmarks/paper/figures/fig_08a_12a.png": (benchmark("-m", "paper"), partial(numbers, paper, MOTION)),
 }
 """Pictures, who makes them, and the numbers that say whether they are old."""

@@ -14,6 +14,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -35,35 +36,53 @@ class Builds:
     ----------
     folder : Path
         Where they go; made, and left to the caller to remove.
-    instruction_set : str
-        Kernel variant that is measured: of the kernels only it is compiled without an effect's code.
+    instruction_sets : sequence of str
+        Kernel variants that are measured: of the kernels only they are compiled without an effect's code.
     """
 
-    def __init__(self, folder: Path, instruction_set: str) -> None:
+    def __init__(self, folder: Path, instruction_sets: Sequence[str]) -> None:
         if not (PACKAGE / "compile_commands.json").exists():
             raise BuildError("build/package is missing: run make install")
         self.folder = folder
-        self.variant = instruction_set
+        self.variants = tuple(instruction_sets)
         shutil.copytree(ROOT / "csrc", folder / "csrc")
+        self.link, made = self._link_command()
+        self.read = self._files_read()
         text = (PACKAGE / "compile_commands.json").read_text(encoding="utf-8")
-        entries = [entry for entry in json.loads(text) if "/csrc/tests/" not in entry["file"]]
+        entries = [entry for entry in json.loads(text) if entry["output"] in made]
         self.entries = [entry for entry in entries if "sundials_bindings" not in entry["file"]]
-        self.link = self._link_command()
         self.objects = self._compile(self.entries, folder / "csrc", "whole")
 
-    def _link_command(self) -> list[str]:
-        module = next(PACKAGE.glob("_core*.so"), None)
+    def _ninja(self, *words: str) -> list[str]:
+        """Lines that a tool of ninja tells of the build."""
         ninja = shutil.which("ninja", path=str(Path(sys.executable).parent)) or shutil.which("ninja")
-        if module is None or ninja is None:
-            raise BuildError("neither a built module nor ninja is there")
-        shown = subprocess.run(
-            [ninja, "-C", str(PACKAGE), "-t", "commands", module.name], capture_output=True, text=True
-        )
+        if ninja is None:
+            raise BuildError("ninja is not there")
+        shown = subprocess.run([ninja, "-C", str(PACKAGE), "-t", *words], capture_output=True, text=True)
         if shown.returncode:
-            raise BuildError(f"ninja does not tell its commands: {shown.stderr.strip()}")
-        line = next(line for line in reversed(shown.stdout.splitlines()) if "-shared" in line)
-        words = shlex.split(line)
-        return words[words.index("&&") + 1 : words.index("&&", 2)]
+            raise BuildError(f"ninja does not tell its {words[0]}: {shown.stderr.strip()}")
+        return shown.stdout.splitlines()
+
+    def _link_command(self) -> tuple[list[str], set[str]]:
+        """How the module is linked, and the object files that it needs."""
+        module = next(PACKAGE.glob("_core*.so"), None)
+        if module is None:
+            raise BuildError("a built module is not there")
+        lines = [shlex.split(line) for line in self._ninja("commands", module.name)]
+        made = {str(PACKAGE / words[words.index("-o") + 1]) for words in lines if "-c" in words and "-o" in words}
+        words = next(words for words in reversed(lines) if "-shared" in words)
+        return words[words.index("&&") + 1 : words.index("&&", 2)], made
+
+    def _files_read(self) -> dict[str, set[str]]:
+        """Files of the sources that each object file was made of, by the output's name in the build."""
+        found: dict[str, set[str]] = {}
+        sources, output = f"{ROOT / 'csrc'}/", ""
+        for line in self._ninja("deps"):
+            if line and not line.startswith(" "):
+                output = str(PACKAGE / line.partition(":")[0])
+            elif line.strip().startswith(sources):
+                found.setdefault(output, set()).add(line.strip().removeprefix(sources))
+        return found
 
     def _compile(self, entries: list[dict[str, Any]], sources: Path, name: str) -> dict[str, Path]:
         """Object files of some entries by the output's name in the build."""
@@ -109,15 +128,14 @@ class Builds:
         sources = self.folder / f"csrc_{name}"
         shutil.copytree(self.folder / "csrc", sources)
         apply(patch, sources)
-        headers = any(file.endswith(".h") for file in patch)
-        touched = [entry for entry in self.entries if self._touched(entry, patch, headers)]
+        touched = [entry for entry in self.entries if self._touched(entry, patch)]
         return self._link(name, self.objects | self._compile(touched, sources, name))
 
-    def _touched(self, entry: dict[str, Any], patch: Patch, headers: bool) -> bool:
-        place = Path(entry["file"]).relative_to(ROOT / "csrc").as_posix()
-        if place.endswith("_kernel.c") and f"TRB_KERNEL_VARIANT={self.variant}" not in entry["command"]:
+    def _touched(self, entry: dict[str, Any], patch: Patch) -> bool:
+        of_kernel = entry["file"].endswith("_kernel.c")
+        if of_kernel and not any(f"TRB_KERNEL_VARIANT={name}" in entry["command"] for name in self.variants):
             return False
-        return place in patch or headers
+        return not self.read.get(entry["output"], set(patch)).isdisjoint(patch)
 
 
 def apply(patch: Patch, sources: Path) -> None:

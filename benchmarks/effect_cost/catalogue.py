@@ -247,6 +247,12 @@ EFFECTS: Final = (
         {},
         {"traction": "muraki_kimura", "lubrication": "mixed"},
         added={"mixed_law": "exponential"},
+        patch={
+            "contact/passes.h": (
+                (r"\n  if \(m->params\.mixed_law > 0\.0\) \{.*?\} else \{(.*?)\n  \}", r"\1\n  (void)b, (void)c;"),
+                (r"\(p->mixed_law > 0\.0 \|\| (thinnest\(n, l\) < p->lambda_full)\)", r"\1"),
+            )
+        },
     ),
     Effect(
         "supply",
@@ -326,6 +332,14 @@ EFFECTS: Final = (
         {"pocket_bars": True, "gravity": True},
         added={"pocket_film": 5e-5},
         counters=("pocket_films",),
+        patch={
+            "contact/pocket.c": (
+                (r", reach = m->pocket_film;", ", reach = 0.0;"),
+                (r"\n    if \(reach > 0\.0\) trb_pocket_push_film\([^;]*;", ""),
+                (r"is_flank \? m->pocket_film : 0\.0", "0.0"),
+            ),
+            "contact/facets.h": ((r" - m->pocket_film", ""),),
+        },
     ),
     Effect(
         "drag",
@@ -371,6 +385,14 @@ EFFECTS: Final = (
         {},
         scene={"defects": (trb.Waviness(on="inner", orders=(12,), amplitudes=(3e-7,)),)},
         counters=("uneven_contacts",),
+        patch={
+            "contact/raceway.c": ((r"\n *if \(at->spin != NULL\) add_uneven\([^\n]*", ""),),
+            KERNEL: (
+                (r"\n    if \(in->uneven != NULL\) [^\n]*", ""),
+                (r"\n    if \(inputs\[c\]\.uneven != NULL\) [^\n]*", ""),
+            ),
+            "motion/rhs.c": ((r"  if \(d->spin == NULL\) return 0;.*?\n  return 0;", "  (void)m;\n  return 0;"),),
+        },
     ),
     Effect("free ring", "the inner ring moves with its mass", {}, {}, scene={"ring": "free", "ring_body": RING}),
     Effect(

@@ -1,7 +1,7 @@
 """Instructions of one force evaluation, counted by callgrind: what a busy machine does not change.
 
 The scenes are made here; a process under valgrind loads the core alone with NumPy, evaluates each scene's forces once to warm up,
-and `EVALUATIONS` times while callgrind counts. Valgrind has no AVX-512, so that the kernels are those of AVX2. What Python takes
+and some times more while callgrind counts. Valgrind has no AVX-512, so that the kernels are those of AVX2. What Python takes
 for a call, some thousand instructions, is in all counts. The first scene of a process takes some percent more; give it twice.
 """
 
@@ -26,6 +26,8 @@ from trbdyn.statics.core_model import build_model
 from trbdyn.statics.ring_motion import ring_motion
 
 EVALUATIONS: Final = 3
+MANY: Final = 50
+"""Evaluations that tell a difference of a thousandth."""
 VARIANT: Final = "avx2"
 HEADER: Final = Path("/usr/include/valgrind/callgrind.h")
 
@@ -35,18 +37,18 @@ void begin(void) { CALLGRIND_START_INSTRUMENTATION; CALLGRIND_ZERO_STATS; }
 void end(void) { CALLGRIND_DUMP_STATS; CALLGRIND_STOP_INSTRUMENTATION; }
 """
 
-COUNTED: Final = f"""
+COUNTED: Final = """
 import ctypes, importlib.util, pickle, sys
-place, requests, scenes = sys.argv[1:]
+place, requests, scenes, evaluations = sys.argv[1:]
 found = importlib.util.spec_from_file_location("trbdyn._core", place)
 core = importlib.util.module_from_spec(found)
 found.loader.exec_module(core)
 ask = ctypes.CDLL(requests)
 for arguments, motion, vector in pickle.load(open(scenes, "rb")):
-    simulation = core.Simulation((core.Model(*arguments),), (motion,), 0.0, vector, {{}})
+    simulation = core.Simulation((core.Model(*arguments),), (motion,), 0.0, vector, {})
     simulation.derivative(0.0, vector)
     ask.begin()
-    for _ in range({EVALUATIONS}):
+    for _ in range(int(evaluations)):
         simulation.derivative(0.0, vector)
     ask.end()
 """
@@ -67,7 +69,9 @@ def described(scene: trb.Scene, vector: Any = None) -> tuple[Any, Any, Any]:
     return arguments, motion.prescribed, state
 
 
-def counted(scenes: Sequence[tuple[Any, Any, Any]], folder: Path, core: Path | None = None) -> list[float]:
+def counted(
+    scenes: Sequence[tuple[Any, Any, Any]], folder: Path, core: Path | None = None, evaluations: int = EVALUATIONS
+) -> list[float]:
     """Instructions of one evaluation of each scene, in thousands.
 
     Parameters
@@ -78,6 +82,8 @@ def counted(scenes: Sequence[tuple[Any, Any, Any]], folder: Path, core: Path | N
         For files in between.
     core : Path, optional
         Another build of the core; by default the installed one.
+    evaluations : int
+        How many are counted.
 
     Raises
     ------
@@ -99,14 +105,14 @@ def counted(scenes: Sequence[tuple[Any, Any, Any]], folder: Path, core: Path | N
     for old in folder.glob("callgrind.out*"):
         old.unlink()
     command = [valgrind, "--tool=callgrind", "--instr-atstart=no", f"--callgrind-out-file={out}", sys.executable]
-    command += ["-E", "-c", COUNTED, str(core or _core.__file__), str(requests), str(data)]
+    command += ["-E", "-c", COUNTED, str(core or _core.__file__), str(requests), str(data), str(evaluations)]
     done = subprocess.run(command, capture_output=True, text=True, cwd=folder, check=False)
     if done.returncode:
         raise CannotCount(f"the process under valgrind failed: {done.stderr.strip().splitlines()[-1]}")
     counts = _totals(folder)
     if len(counts) != len(scenes):
         raise CannotCount(f"valgrind gave {len(counts)} counts for {len(scenes)} scenes")
-    return [count / EVALUATIONS / 1000.0 for count in counts]
+    return [count / evaluations / 1000.0 for count in counts]
 
 
 def _totals(folder: Path) -> list[float]:

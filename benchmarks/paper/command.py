@@ -16,10 +16,11 @@ from common import defaults_mark, revision
 from tqdm import tqdm
 
 from paper.figures import draw_all, movable_limits
+from paper.keep import keep
 from paper.point_numbers import Runs, read_run
 from paper.points import DIRECTION, STARTS, Inputs, Point, points
 from paper.settle import Plan, PointTask, is_done, is_there, run_point
-from paper.statements import NAMED, by_inputs, judge_all, markdown
+from paper.statements import NAMED, by_inputs, judge_all, judge_inputs, markdown
 from trbdyn import __version__, plot
 from trbdyn.base.own_files import folder_path
 from trbdyn.cli.outcome import DONE, FAILED, Parser, let_any_name_be_printed, run_command
@@ -93,6 +94,12 @@ def parser() -> argparse.ArgumentParser:
         metavar="FOLDER",
         help="folder of points that were run with --min-time 0.5 --max-time 0.5, as far as the paper could: a column beside",
     )
+    paper.add_argument(
+        "--into",
+        metavar="FILE",
+        type=Path,
+        help="run nothing: add the points that are there to the paper.json of an earlier campaign, and judge all again",
+    )
     paper.add_argument("--report", action="store_true", help="run nothing: figures and table of what is there")
     paper.add_argument("--workers", type=int, metavar="N", help="worker processes (default, and at most: the cores)")
     paper.add_argument("--quiet", action="store_true", help="no progress bar, no table")
@@ -119,12 +126,15 @@ def run_paper(options: argparse.Namespace) -> int:
     plan = _plan(options)
     chosen = _chosen(options)
     failures: dict[str, str] = {}
-    if not options.report:
+    if not options.report and options.into is None:
         failures = run_points(chosen, folder, plan, options.workers, resume=options.resume, progress=not options.quiet)
     runs = read_runs(folder)
     if not runs.all:
         why = next(iter(failures.values()), "").partition("\n")[0]
         raise FileError(f"{folder}: holds no points to report on{f'; the first that failed: {why}' if why else ''}")
+    if options.into is not None:
+        print(keep(options.into, runs))
+        return DONE
     early = None if options.early is None else read_runs(folder_path(options.early, "early"))
     text = report(runs, folder, plan, failures, early)
     if not options.quiet:
@@ -247,7 +257,7 @@ def report(runs: Runs, folder: Path, plan: Plan, failures: dict[str, str], early
         If something cannot be written.
     """
     pictures = plot.make_folder(folder / FIGURES)
-    sets = {inputs: judge_all(runs.within(inputs)) for inputs in runs.inputs}
+    sets = {inputs: judge_inputs(runs, inputs) for inputs in runs.inputs}
     every, runs = runs, runs.within(NAMED if NAMED in sets and Inputs() not in sets else Inputs())
     limits = movable_limits(runs)
     judged = judge_all(runs, limits)

@@ -12,12 +12,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
 from typing import Any, Final, Literal
 
 from paper.figures import MovableLimits
 from paper.point_numbers import Runs
-from paper.points import FIGURES, Condition, Inputs, StartKind
+from paper.points import FIGURES, Condition, Inputs, Point, StartKind
+from trbdyn.model.bearing import Bearing
+from trbdyn.model.cases import rig_30310
 
 SIGMAS: Final = 2.0
 """Standard errors that a difference must have to count."""
@@ -35,6 +38,8 @@ CLEARLY: Final = 1.5
 """Factor of "clearly larger"."""
 AXIAL_LIMIT: Final = 0.15
 """Share of the axial play, as the paper says."""
+NO_HANG: Final = 0.5
+"""Orbit / Cpr from which the reach of a locus is that of a whirl, and not of a cage that hangs at the limit of its play."""
 UNEQUAL: Final = 0.1
 """Standard deviation of mean gaps, in units of Cpc/(Dpw/2), from which spacing is unequal."""
 ORDER_SHARE: Final = 0.5
@@ -167,11 +172,32 @@ def _circles(runs: Runs, condition: Condition, start: StartKind) -> tuple[bool, 
     return circling and abs(ratio - 1.0) <= RATIO_TOLERANCE, text
 
 
+def _whirls(runs: Runs, condition: Condition, start: StartKind) -> tuple[bool, str]:
+    """Whether the orbit has the cage's own frequency, in every seed: it circles, or most of its orbit is at that frequency.
+    A cage that hangs to one side may do so, too.
+    """
+    circles, text = _circles(runs, condition, start)
+    numbers = [run.numbers for run in runs.of(condition, start)]
+    if circles or not all(_has_own_frequency(one) for one in numbers):
+        return circles, text
+    ratio = runs.mean(condition, start, "whirl_ratio")
+    return True, f"ratio {ratio:.2f}, {text}"
+
+
+def _has_own_frequency(numbers: Mapping[str, Any]) -> bool:
+    ratio = numbers["whirl_ratio"]
+    if ratio is None or abs(ratio - 1.0) > RATIO_TOLERANCE or numbers["cage_motion"] == "stable":
+        return False
+    if numbers["cage_motion"] == "circling":
+        return True
+    return bool((numbers["whirl_amplitude_over_cpr"] / numbers["orbit_over_cpr"]) ** 2 >= ORDER_SHARE)
+
+
 def _own_frequency(runs: Runs, start: StartKind) -> Finding:
     conditions = FIGURES["12a"]
     if not _have(runs, start, conditions):
         return NOT_RUN
-    found = [_circles(runs, condition, start) for condition in conditions]
+    found = [_whirls(runs, condition, start) for condition in conditions]
     words = ", ".join(f"{name}: {text}" for name, (_, text) in zip(_rpm(conditions), found, strict=True))
     return words, all(circles for circles, _ in found)
 
@@ -180,7 +206,7 @@ def _mostly_own_frequency(runs: Runs, start: StartKind) -> Finding:
     conditions = tuple(dict.fromkeys((*FIGURES["12a"], *FIGURES["12b"])))
     if not _have(runs, start, conditions):
         return NOT_RUN
-    count = sum(_circles(runs, condition, start)[0] for condition in conditions)
+    count = sum(_whirls(runs, condition, start)[0] for condition in conditions)
     return f"in {count} of {len(conditions)} conditions of figs. 12a and 12b", count > len(conditions) / 2
 
 
@@ -190,9 +216,19 @@ def _growing(figure: str, name: Callable[[Sequence[Condition]], list[str]]) -> J
         if not _have(runs, start, conditions):
             return NOT_RUN
         values = [_orbit(runs, condition, start) for condition in conditions]
-        return "orbit/Cpr " + _listed(name(conditions), values), _grows(values)
+        full = [abs(_reach(runs, condition, start) - 1.0) <= ABOUT_ONE for condition in conditions]
+        text = "orbit/Cpr " + _listed(name(conditions), values)
+        return text, _and([_grows_or_fills(*pair) for pair in zip(pairwise(values), pairwise(full), strict=True)])
 
     return judge
+
+
+def _grows_or_fills(values: tuple[tuple[float, float], tuple[float, float]], full: tuple[bool, bool]) -> bool | None:
+    """Whether the second value is the larger one; where both whirls fill the play it is as large as it can be, and no smaller."""
+    grows = _grows(values)
+    if grows is None or not (all(full) and min(value for value, _ in values) > NO_HANG):
+        return grows
+    return grows or not _grows(values[::-1])
 
 
 def _about_one(runs: Runs, start: StartKind) -> Finding:
@@ -272,9 +308,14 @@ def _forces(runs: Runs, start: StartKind) -> Finding:
     return f"95 % of the force in contact: {slow:.1f} N at 1000 rpm, {fast:.1f} N at 3000 rpm", fast >= MUCH * slow
 
 
-def _spacing_unit(runs: Runs, condition: Condition, start: StartKind) -> float:
-    bearing = runs.of(condition, start)[0].result.scene.bearing
-    return math.degrees(bearing.cage.play_circumferential / (0.5 * bearing.pitch_diameter))
+@cache
+def _rig() -> Bearing:
+    return rig_30310()
+
+
+def _spacing_unit() -> float:
+    """Angle Cpc/(Dpw/2) that a roller may move in its pocket (deg)."""
+    return math.degrees(_rig().cage.play_circumferential / (0.5 * _rig().pitch_diameter))
 
 
 def _yields(runs: Runs, start: StartKind) -> Finding:
@@ -285,7 +326,7 @@ def _yields(runs: Runs, start: StartKind) -> Finding:
     if not math.isfinite(share):
         return "less than a turn of the cage", None
     text = f"gaps vary by {varies:.3f} deg rms, {100.0 * share:.0f} % of its square with the cage's turn"
-    return text, varies >= UNEQUAL * _spacing_unit(runs, condition, start) and share >= ORDER_SHARE
+    return text, varies >= UNEQUAL * _spacing_unit() and share >= ORDER_SHARE
 
 
 def _persists(runs: Runs, start: StartKind) -> Finding:
@@ -294,7 +335,7 @@ def _persists(runs: Runs, start: StartKind) -> Finding:
         return NOT_RUN
     lasting, varies = (runs.mean(condition, start, name) for name in ("spacing_mean_std_deg", "spacing_varies_deg"))
     text = f"mean gaps differ by {lasting:.3f} deg rms, each varies by {varies:.3f} deg rms"
-    return text, lasting >= UNEQUAL * _spacing_unit(runs, condition, start) and lasting > varies
+    return text, lasting >= UNEQUAL * _spacing_unit() and lasting > varies
 
 
 def _scatter(runs: Runs, start: StartKind) -> Finding:
@@ -325,8 +366,7 @@ def _combined_size(runs: Runs, start: StartKind) -> Finding:
     conditions = _combined()
     if not _have(runs, start, conditions):
         return NOT_RUN
-    plays = runs.of(conditions[0], start)[0].result.clearances
-    size = plays.circumferential / plays.radial
+    size = _rig().cage.play_circumferential / _rig().cage.play_radial
     reached = [_reach(runs, condition, start) for condition in conditions]
     orbits = [_orbit(runs, condition, start)[0] for condition in conditions]
     text = f"the locus reaches {min(reached):.2f} to {max(reached):.2f} Cpr, orbit {min(orbits):.2f} to {max(orbits):.2f} Cpr"
@@ -458,6 +498,18 @@ def judge_statement(runs: Runs, statement: Statement) -> Judged:
         for start in runs.starts
     }
     return Judged(statement, findings, {start: names for start, names in unsettled.items() if names}, verdict)
+
+
+def judge_inputs(every: Runs, inputs: Inputs) -> list[Judged]:
+    """Judge every statement with some inputs, from equal spacing; that on the spacing from random spacing, where it begins."""
+    unequal = FIGURES["18"][0]
+    runs = every.within(inputs)
+    chosen = [run for run in runs.all if run.point.start == "equal" or _begins(run.point, unequal)]
+    return judge_all(Runs(chosen) if "equal" in runs.starts else runs)
+
+
+def _begins(point: Point, condition: Condition) -> bool:
+    return point.start == "unequal" and point.condition == condition
 
 
 def by_inputs(sets: Mapping[Inputs, Sequence[Judged]]) -> str:

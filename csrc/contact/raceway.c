@@ -9,9 +9,8 @@
 
 static const trb_race_nodes *nodes_of(const trb_pair *pair) { return pair->own; }
 
-/* first: of its lanes in a tile, if a surface is off its true form there. */
-static trb_race_input race_input(const trb_model *m, const trb_instant *at, int roller, const trb_pair *pair, int first,
-                                 trb_workspace *work)
+static inline trb_race_input race_input(const trb_model *m, const trb_instant *at, int roller, const trb_pair *pair,
+                                        const trb_workspace *work)
 {
   trb_race_input in = {.roller = &at->rollers[roller],
                        .ring = &trb_pair_ring(pair, at)[roller],
@@ -24,14 +23,18 @@ static trb_race_input race_input(const trb_model *m, const trb_instant *at, int 
     in.linear = work->laws_use == TRB_LAWS_FOLLOWED;
     if (!in.linear) in.laws->loaded = 0;
   }
-  if (at->spin == NULL) return in;
-  const double azimuth = at->drive->frame_angle + at->rollers[roller].angle, spin = at->spin[roller];
-  if (!trb_uneven_is_near(m, in.nodes->race, roller, azimuth, in.ring->angle, spin)) return in;
-  trb_uneven_fill(m, &in, roller, azimuth, spin, first, work->uneven);
-  work->counters.uneven_contacts++;
-  in.uneven = work->uneven;
-  in.lane = first;
   return in;
+}
+
+/* What a surface off its true form does to a contact. first: of its lanes in a tile. */
+static void add_uneven(const trb_model *m, const trb_instant *at, int roller, int first, trb_workspace *work, trb_race_input *in)
+{
+  const double azimuth = at->drive->frame_angle + at->rollers[roller].angle, spin = at->spin[roller];
+  if (!trb_uneven_is_near(m, in->nodes->race, roller, azimuth, in->ring->angle, spin)) return;
+  trb_uneven_fill(m, in, roller, azimuth, spin, first, work->uneven);
+  work->counters.uneven_contacts++;
+  in->uneven = work->uneven;
+  in->lane = first;
 }
 
 /* Not with laws that join the nodes of a contact, as the load of the whole contact and gaps beside it, and not with hysteresis, which is no part of what
@@ -66,7 +69,8 @@ static void add_output(const trb_race_output *out, const trb_pair *pair, int row
 static void raceway_of(const trb_model *m, const trb_instant *at, int roller, const trb_pair *pair, trb_workspace *work,
                        trb_race_output *output)
 {
-  const trb_race_input input = race_input(m, at, roller, pair, 0, work);
+  trb_race_input input = race_input(m, at, roller, pair, work);
+  if (at->spin != NULL) add_uneven(m, at, roller, 0, work, &input);
   trb_kernel_variants[work->variant].raceway(m, &input, 1, work->lanes, &work->counters, output);
 }
 
@@ -149,7 +153,8 @@ static void evaluate(const trb_model *m, const trb_instant *at, const trb_batch 
     for (int c = 0; c < n; c++) {
       const int side = (first + c) % batch->n;
       contacts[c] = (contact){at->chosen[(first + c) / batch->n], batch->index[side], batch->pairs[side]};
-      inputs[c] = race_input(m, at, contacts[c].roller, contacts[c].pair, c * m->n_lanes, work);
+      inputs[c] = race_input(m, at, contacts[c].roller, contacts[c].pair, work);
+      if (at->spin != NULL) add_uneven(m, at, contacts[c].roller, c * m->n_lanes, work, &inputs[c]);
     }
     /* who looks at lanes sees zeros where a law was not asked, and not what another contact has left there */
     if (detail != NULL && detail->lanes != NULL) memset(work->lanes, 0, sizeof *work->lanes);

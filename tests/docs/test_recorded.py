@@ -70,6 +70,24 @@ def test_notebooks_say_when_their_outputs_are_older_than_the_defaults(recorded: 
         assert recorded.old_stamps(text, mark) == [], f"{path.name}: make notebooks, and the line that says when"
 
 
+def test_the_notebook_of_the_paper_tells_the_campaign_as_it_is_kept(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What its cells print of the campaign's file today is what stands below them."""
+    monkeypatch.chdir(ROOT / "notebooks")
+    cells = json.loads(Path("paper_figures.ipynb").read_text(encoding="utf-8"))["cells"]
+    names: dict[str, Any] = {"json": json, "Path": Path}
+    told = 0
+    for cell in cells:
+        source = "".join(cell["source"])
+        if cell["cell_type"] == "code" and "campaign" in source and "plt." not in source:
+            exec(source, names)
+            kept = "".join("".join(one["text"]) for one in cell["outputs"] if one["output_type"] == "stream")
+            assert capsys.readouterr().out == kept
+            told += 1
+    assert told == 2
+
+
 OLD_TABLE = """
 3000 rpm, 4930 N axial load, 50 turns from a whirling start, from `summary.json`:
 

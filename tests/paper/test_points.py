@@ -278,6 +278,9 @@ class TestStatements:
             ((0.3, 0.6, 0.9), 0.01, "agrees"),
             ((0.3, 0.6, 0.9), 0.2, "disagrees"),
             ((0.9, 0.6, 0.9), 0.01, "disagrees"),
+            ((0.3, 0.92, 0.91), 0.01, "agrees"),
+            ((0.3, 0.97, 0.89), 0.01, "disagrees"),
+            ((0.3, 0.6, 0.6), 0.01, "disagrees"),
             ((0.3, 0.6, 0.9), math.nan, "open"),
         ],
     )
@@ -299,6 +302,31 @@ class TestStatements:
         assert self.verdict("8a-measured", runs(1.01, "circling"))[0] == "agrees"
         assert self.verdict("8a-measured", runs(1.2, "circling"))[0] == "disagrees"
         assert self.verdict("8a-measured", runs(1.0, "stable"))[0] == "disagrees"
+
+    def test_frequency_of_a_cage_that_hangs_to_one_side(self) -> None:
+        def verdict(ratio: float, amplitude: float) -> str:
+            table = orbit(0.3) | {"cage_motion": "rocking", "whirl_ratio": ratio, "whirl_amplitude_over_cpr": amplitude}
+            return judged("8a-measured", made_up({(c, "equal"): dict(table) for c in FIGURES["12a"]})).verdict
+
+        assert verdict(1.0, 0.28) == "agrees"
+        assert verdict(1.0, 0.15) == "disagrees"
+        assert verdict(1.2, 0.28) == "disagrees"
+
+    def test_what_is_in_a_file_is_judged_as_the_runs_were(self, tmp_path: Path) -> None:
+        """Points that are added to a file take their place beside the others; the same point again changes nothing."""
+        from paper import keep
+
+        file = tmp_path / "paper.json"
+        kept = json.loads((Path(keep.__file__).with_name("paper.json")).read_text(encoding="utf-8"))
+        file.write_text(json.dumps(kept), encoding="utf-8")
+        keep.keep(file, keep.runs_of(kept["points"]))
+        again = json.loads(file.read_text(encoding="utf-8"))
+        assert again == kept
+        first = next(iter(kept["points"]))
+        other = keep.runs_of({first: kept["points"][first] | {"orbit_over_cpr": 9.0}})
+        assert keep.keep(file, other).startswith("| Fig. |")
+        changed = json.loads(file.read_text(encoding="utf-8"))["points"]
+        assert [name for name, numbers in changed.items() if numbers != kept["points"][name]] == [first]
 
     def test_most_conditions_are_more_than_half(self) -> None:
         conditions = list(dict.fromkeys((*FIGURES["12a"], *FIGURES["12b"])))

@@ -362,6 +362,7 @@ def _roller_inputs(rig: Bearing) -> tuple[Input, ...]:
             "bearing.roller.diameter_scatter, .diameter_deviation",
             "none",
             (
+                Level("0.2 µm range", {"bearing.roller.diameter_scatter.range": 0.2 * MICRO}),
                 Level("1 µm range", {"bearing.roller.diameter_scatter.range": MICRO}),
                 Level("one +1 µm", _one_large(rig, MICRO)),
             ),
@@ -388,8 +389,8 @@ def _other_inputs() -> tuple[Input, ...]:
             "direction of the radial load on the inner ring",
             "scene.radial_direction_deg",
             "90° (loaded zone on top)",
-            _levels("scene.radial_direction_deg", {"0°": 0.0, "-90°": -90.0}),
-            "the paper does not give the sense: loaded zone at the side, at the bottom",
+            _levels("scene.radial_direction_deg", {"0°": 0.0, "180°": 180.0, "-90°": -90.0}),
+            "the paper does not give the sense: loaded zone where rollers rise, where they descend, at the bottom",
             "load",
             combined_only=True,
         ),

@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 SCHEMA: Final = "trbdyn-sensitivity-1"
 COLUMNS: Final = {"orbit_growth": 2, "whirl_radius": 3, "orbit": 3, "pocket_force": 1, "torque": 3}
 """Indicators in the tables, with the decimals."""
+LEFT_OPEN: Final = ("load direction", "diameter scatter")
+"""Inputs whose levels have columns of their own: the statements on combined load and on whirls at light load hang on them."""
 SIGNS: Final = {"holds": "+", "fails": "**no**", "open": "?", "-": "-"}
 
 
@@ -105,14 +107,57 @@ def markdown(
     found: Sequence[Effect],
     judged: Sequence[Judged],
 ) -> str:
-    """Statements against inputs, and the effects at each point."""
-    parts = ["## Statements against inputs\n", *_statements(plan.inputs, judged)]
+    """Values at each level of the inputs that the paper leaves open, statements against inputs, and the effects at each point."""
+    parts = []
+    for entry in plan.inputs:
+        if entry.name in LEFT_OPEN:
+            parts += [
+                f"## {entry.text[:1].upper()}{entry.text[1:]}\n",
+                *_levels(plan, entry, nominal, found, judged),
+                "",
+            ]
+    parts += ["## Statements against inputs\n", *_statements(plan.inputs, judged)]
     for place in plan.places:
         here = [effect for effect in found if effect.point == place.name]
         if here:
             parts += [f"\n## {plain(place.condition.title)}\n"]
             parts += _effects(place, plan.inputs, nominal[place.name], here)
     return "\n".join(parts) + "\n"
+
+
+def _levels(
+    plan: Plan,
+    entry: Input,
+    nominal: Mapping[str, Mapping[str, Nominal]],
+    found: Sequence[Effect],
+    judged: Sequence[Judged],
+) -> list[str]:
+    """A column for each level: the values themselves, and whether the statements hold."""
+    labels, units = [level.label for level in entry.levels], {one.name: one for one in INDICATORS}
+    lines = [_row(["point", "quantity", entry.nominal, *labels]), _row(["---"] * (3 + len(labels)))]
+    table = {(e.point, e.level, e.indicator): e for e in found if e.input == entry.name}
+    for place in plan.places:
+        for name in (name for name in COLUMNS if name in nominal[place.name]):
+            effects = [table.get((place.name, label, name)) for label in labels]
+            if any(effects):
+                known, digits = nominal[place.name][name], COLUMNS[name]
+                cells = [f"{known.mean:.{digits}f} ± {known.deviation:.{digits}f}"]
+                cells += [_value(effect, digits) for effect in effects]
+                quantity = f"{plain(units[name].text)} ({plain(units[name].unit)})"
+                lines.append(_row([plain(place.condition.title), quantity, *cells]))
+    signs = {(one.input, one.level, one.statement): SIGNS[one.outcome] for one in judged}
+    for statement in dict.fromkeys(one.statement for one in judged):
+        shown = [signs.get((entry.name, label, statement), "-") for label in labels]
+        if set(shown) != {"-"}:
+            lines.append(_row(["statement", statement, signs.get((NOMINAL, NOMINAL, statement), "-"), *shown]))
+    return lines
+
+
+def _value(effect: Effect | None, decimals: int) -> str:
+    if effect is None:
+        return "-"
+    text = f"{effect.value:.{decimals}f}"
+    return f"**{text}**" if effect.beyond else text
 
 
 def _statements(inputs: Sequence[Input], judged: Sequence[Judged]) -> list[str]:
@@ -145,7 +190,7 @@ def _effects(
     for entry in shown:
         labels = [level.label for level in entry.levels]
         cells = [" / ".join(_change(table.get((entry.name, v, n)), COLUMNS[n]) for v in labels) for n in names]
-        lines.append(_row([entry.name, entry.nominal, *([*labels, "-"][:2]), *cells]))
+        lines.append(_row([entry.name, entry.nominal, *([*labels, "-"][:1]), " / ".join(labels[1:]) or "-", *cells]))
     largest = {name: [e.noise for e in effects if e.indicator == name] for name in names}
     noise = [f"± {max(v):.{COLUMNS[n]}f}" if v else "-" for n, v in largest.items()]
     lines.append(_row(["*largest noise of a change (95 %)*", "", "", "", *noise]))
