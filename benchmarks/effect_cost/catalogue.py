@@ -249,8 +249,11 @@ EFFECTS: Final = (
         added={"mixed_law": "exponential"},
         patch={
             "contact/passes.h": (
-                (r"\n  if \(m->params\.mixed_law > 0\.0\) \{.*?\} else \{(.*?)\n  \}", r"\1\n  (void)b, (void)c;"),
-                (r"\(p->mixed_law > 0\.0 \|\| (thinnest\(n, l\) < p->lambda_full)\)", r"\1"),
+                (
+                    r"\n  if \(m->params\.effects\.mixed_law > 0\.0\) \{.*?\} else \{(.*?)\n  \}",
+                    r"\1\n  (void)b, (void)c;",
+                ),
+                (r"\(p->effects\.mixed_law > 0\.0 \|\| (thinnest\(n, l\) < p->friction\.lambda_full)\)", r"\1"),
             )
         },
     ),
@@ -334,11 +337,11 @@ EFFECTS: Final = (
         counters=("pocket_films",),
         patch={
             "contact/pocket.c": (
-                (r", reach = m->pocket_film;", ", reach = 0.0;"),
+                (r", reach = p->pockets->film;", ", reach = 0.0;"),
                 (r"\n    if \(reach > 0\.0\) trb_pocket_push_film\([^;]*;", ""),
-                (r"is_flank \? m->pocket_film : 0\.0", "0.0"),
+                (r"is_flank \? p->pockets->film : 0\.0", "0.0"),
             ),
-            "contact/facets.h": ((r" - m->pocket_film", ""),),
+            "contact/facets.h": ((r" - p->pockets->film", ""),),
         },
     ),
     Effect(
