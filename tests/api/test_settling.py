@@ -337,6 +337,9 @@ def test_starts_side_by_side() -> None:
     assert still.verdict == "start decides"
     assert still.ends == pytest.approx((0.1, 0.9), abs=0.01)
     assert still.time_low > 6.0
+    creeping = whirling(lambda t: 0.1 + 0.011 * t, 120)
+    for_now = obs.compare_starts((creeping, high), whirling(lambda t: 0.3 + 0 * t, 60), window=20, creep_turns=5000.0)
+    assert (for_now.verdict, round(for_now.time_low, 1)) == ("start decides", 2.0)
     soon = obs.compare_starts((rest, high), whirling(lambda t: 0.3 + 0 * t, 60), window=20, creep_turns=90.0)
     assert soon.verdict == "unknown"
     assert "creep within 90 turns" in soon.reason

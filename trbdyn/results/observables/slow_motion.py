@@ -546,16 +546,15 @@ def _moves(when: Array, values: Array) -> float:
 
 def _keeps(series: Sequence[tuple[Array, Array]], window: int) -> float:
     """Time (s) within which no start is expected to move by more than the limit of an orbit: as long as their rates let it be, or
-    as they were run where none moves and the halves of each differ by less; 0 where this is not known.
+    that of their runs after the first window where none has moved by it; else 0.
     """
     limit, rest = LIMITS[COMPARED], [(when[window:], values[window:]) for when, values in series]
-    span = max(float(np.ptp(when)) for when, _ in rest)
+    spans = [float(np.ptp(when)) for when, _ in rest]
     rated = limit / max(max(drift(*one).bound for one in rest), 1e-300)
-    if rated > span:
+    if rated > max(spans):
         return rated
-    halves = [np.array_split(values, 2) for _, values in rest]
-    still = all(abs(one.mean() - other.mean()) <= limit for one, other in halves)
-    return min(float(np.ptp(when)) for when, _ in rest) if still and not any(_moves(*one) for one in rest) else 0.0
+    kept = all(abs(float(values[-window:].mean() - values[:window].mean())) <= limit for _, values in rest)
+    return min(spans) if kept else 0.0
 
 
 def _comes(series: tuple[Array, Array], between: tuple[Array, Array], window: int, way: float, to: float) -> bool:
