@@ -225,11 +225,12 @@ def cage_answer(
 ) -> CageAnswer:
     """What a cage does in the long run, as soon as it can be told: from starts side by side, with rollers as they are made.
 
-    Runs from rest and from a large whirl go on side by side in threads, window by window of 20 turns of the cage, until both
-    have come to the same motion. Where they have not, a third run from a whirl of 0.3 of the play shows the direction, with its
-    rate: from the second window on where the rollers creep slowly, else from the fourth. A search ends when the starts agree;
-    when a direction is told whose end lies beyond the processor time; when the rollers creep so slowly that the start decides,
-    and then both motions are told; or when the processor time is spent.
+    Runs from rest and from a large whirl go on side by side in threads, window by window of 20 turns of the cage (10 where these
+    are costly), until both have come to the same motion. Where they have not, a third run from a whirl of 0.3 of the play shows
+    the direction, with its rate: from the second window on where the rollers creep slowly, else from the fourth. A search ends
+    when the starts agree, or are of one class with orbits whose range is told; when a direction is told whose end lies beyond
+    the processor time; when the rollers creep so slowly that the start decides, and then both motions are told; or when the
+    processor time is spent.
 
     Parameters
     ----------
