@@ -119,7 +119,8 @@ class OfRollers:
             last = f"; the orbit of the last one still {_way(found.rate)} towards it" if moving else ""
             return f"{'two of three starts' if moving else 'all starts'} agree: {of}{last}"
         if found.verdict == "alike":
-            low, high = sorted(found.ends)
+            low, high = (end(*found.ends, found.orbit + way * found.error) for end, way in ((min, -1.0), (max, 1.0)))
+            low = max(low, 0.0)
             does = " or ".join(dict.fromkeys(WHIRLS.get(kind, "moves") for kind in self.kinds))
             return f"it {does} from all starts; their orbits differ or wander: {low:.2f} to {high:.2f} Cpr"
         if found.verdict in ("grows", "dies"):
