@@ -146,7 +146,7 @@ def test_a_plan_can_be_stopped(tmp_path: Path) -> None:
 
 def test_a_missing_extra_is_named(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setattr("trbdyn.extras.app.find_spec", lambda name: None)
-    assert main(["app", "--no-browser"]) == 1
+    assert main(["app", "--no-browser"]) == 2
     assert "pip install 'trbdyn[app]'" in capsys.readouterr().err
 
 

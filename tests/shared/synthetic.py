@@ -174,7 +174,7 @@ class StubScene:
         rolling_pressure_force=False,
         friction=SimpleNamespace(lambda_full=1.5),
     )
-    lubricant = SimpleNamespace(pressure_coefficient=1.973e-8)
+    lubricant = SimpleNamespace(pressure_coefficient=1.973e-8, oil=None)
     axial_load, radial_load = 4930.0, 0.0
     rotating_load = None
     speed_rpm = turning_rpm = 3000.0

@@ -52,6 +52,10 @@ LEAST_SCATTER: Final = 1e-7
 """Range of the rollers' diameters from which they count as unequal (m)."""
 
 
+NOT_MEASURED: Final = "errors of such a run were not measured beforehand; trbdyn.check measures them at the run"
+"""Said of a run that the table of errors does not hold: several bearings, no cage, an integrator or options of its own."""
+
+
 @dataclass(frozen=True, repr=False)
 class Estimate(Displayed):
     """What a run is expected to take and give.
@@ -113,10 +117,18 @@ class Estimate(Displayed):
                 f"{self.bearing_time:.4g} s of bearing time in about {self.wall_s:.3g} s, {self.wall_s_low:.2g} to "
                 f"{self.wall_s_high:.2g} s (real time x {self.real_time_factor:.3g}), {self.steps:,} steps",
                 f"{self.records:,} records, {self.memory_mb:.3g} MB in memory",
-                f"cage centre within {100.0 * self.error_cage_over_cpr:.2g} % of Cpr over {1e3 * self.window:.2g} ms "
-                f"(worst {100.0 * self.error_cage_over_cpr_worst:.2g} %), power loss within {100.0 * self.error_power:.2g} % "
-                f"(scene '{self.case}')",
+                self._errors_said,
             ]
+        )
+
+    @property
+    def _errors_said(self) -> str:
+        if not math.isfinite(self.error_cage_over_cpr):
+            return NOT_MEASURED
+        return (
+            f"cage centre within {100.0 * self.error_cage_over_cpr:.2g} % of Cpr over {1e3 * self.window:.2g} ms "
+            f"(worst {100.0 * self.error_cage_over_cpr_worst:.2g} %), power loss within {100.0 * self.error_power:.2g} % "
+            f"(scene '{self.case}')"
         )
 
     __repr__ = __str__
@@ -140,10 +152,12 @@ class Estimate(Displayed):
             for words, (value, unit) in numbers.items()
             if math.isfinite(value)
         )
-        note = (
-            f"Errors are those of the measured scene '{self.case}', the one most like this; "
-            f"errors over {1e3 * self.window:.2g} ms."
-        )
+        note = NOT_MEASURED
+        if math.isfinite(self.error_cage_over_cpr):
+            note = (
+                f"Errors are those of the measured scene '{self.case}', the one most like this; "
+                f"errors over {1e3 * self.window:.2g} ms."
+            )
         return Shown("Estimate of a run", rows, ("quantity", "value", "unit"), (note,))
 
 
