@@ -132,8 +132,9 @@ def test_every_parameter_of_the_core_has_an_input() -> None:
 
 
 def test_the_numbers_of_a_model_belong_to_one_part() -> None:
-    """The core's table says whose each number is; a model has those of one part, and a housing those of a ring that moves. A row of
-    pockets has its own roughness, damping and film in the core; users give them with the roughnesses and effects.
+    """The core's table says whose each number is; a model has those of one part, and a housing those of a ring that moves.
+
+    A row of pockets has its own roughness, damping and film in the core; users give them with the roughnesses and effects.
     """
     parts = {}
     for model in kinds_of(Model):
