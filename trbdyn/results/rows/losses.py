@@ -167,8 +167,8 @@ TORQUES: Final = (
 
 NOTES: Final = (
     Number(
-        "oil_temperature",
-        "temperature that was given for the oil",
+        "oil_temperature_note",
+        "Temperature that was given for the oil",
         "",
         "What `lubricant.temperature_c` was measured on (`temperature_of`), and how far films may be from it: films of the run "
         "have this temperature, those of `trbdyn.uncertainty` the whole band.",
