@@ -95,8 +95,8 @@ typedef struct trb_race_input {
   const double          *sphere;
   const trb_race_nodes  *nodes;
   const trb_uneven      *uneven; /* NULL: both surfaces have their true form there */
-  int                    lane;   /* the first of its lanes in `uneven` */
   trb_law_slopes        *laws;   /* where slopes of its laws are kept; NULL: nowhere */
+  int                    lane;   /* the first of its lanes in `uneven` */
   int                    linear; /* 1: its laws are followed along them */
 } trb_race_input;
 

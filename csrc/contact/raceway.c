@@ -46,7 +46,7 @@ static int has_law_slopes(const trb_model *m)
 
 void trb_law_slopes_create(const trb_model *m, trb_memory *memory, trb_workspace *work)
 {
-  const size_t contacts = (size_t)(TRB_N_RACES * m->n_rollers), each = (size_t)(TRB_N_LAW_SLOPES * m->n_lanes);
+  const size_t contacts = (size_t)TRB_N_RACES * (size_t)m->n_rollers, each = (size_t)TRB_N_LAW_SLOPES * (size_t)m->n_lanes;
   if (!has_law_slopes(m)) return;
   work->laws = trb_memory_zeros(memory, contacts, sizeof *work->laws);
   double *nodes = trb_memory_zeros(memory, contacts * each, sizeof *nodes);

@@ -168,7 +168,12 @@ static inline void add_product(const double (*columns)[TRB_NP], int n, const dou
 
 /* A part of a column as numbers side by side: where the number of columns is not known to compilers they would take the loop over the columns
  * instead, and shuffle. */
-enum { QUARTET = TRB_WIDE < 4 ? TRB_WIDE : 4, QUARTETS = TRB_NP / QUARTET };
+#if TRB_WIDE < 4
+enum { QUARTET = TRB_WIDE };
+#else
+enum { QUARTET = 4 };
+#endif
+enum { QUARTETS = TRB_NP / QUARTET };
 typedef double quartet __attribute__((vector_size(QUARTET * sizeof(double))));
 typedef struct column_sum {
   quartet part[QUARTETS];

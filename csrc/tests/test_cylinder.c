@@ -49,7 +49,7 @@ static void set_up(bench *b, int race, double half_angle)
 
 static void evaluate(bench *b)
 {
-  const trb_race_input in = {&b->roller, &b->ring, &b->cone, b->centre, b->sphere, &b->nodes, NULL, 0, NULL, 0};
+  const trb_race_input in = {&b->roller, &b->ring, &b->cone, b->centre, b->sphere, &b->nodes, NULL, NULL, 0, 0};
   trb_kernel_variants[b->variant].raceway(b->m, &in, 1, b->work->lanes, &b->counters, &b->out);
 }
 
