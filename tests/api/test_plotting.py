@@ -115,7 +115,7 @@ def test_given_axes_keep_their_title_and_their_place(name: str, whirling: Result
 )
 def test_a_run_without_a_cage_has_no_picture_of_it(name: str, whirling: Result) -> None:
     whirling.scene.effects = SimpleNamespace(
-        **(vars(whirling.scene.effects) | {"bodies": "rollers", "has_cage": False})
+        **(vars(whirling.scene.effects) | {"bodies": "rollers", "has_cage": False, "has_pockets": False})
     )
     with pytest.raises(InputError, match="has no cage"):
         plot.PICTURES[name][0](whirling)
@@ -248,7 +248,7 @@ def test_all_saves_what_was_recorded(tmp_path: Path, whirling: Result) -> None:
     cage_and_torque = {"cage_locus", "axial_motion", "tilt", "spectrum", "poincare", "torque_split", "torque_sources"}
     assert {file.stem for file in some} == cage_and_torque
     whirling.scene.effects = SimpleNamespace(
-        **(vars(whirling.scene.effects) | {"bodies": "rollers", "has_cage": False})
+        **(vars(whirling.scene.effects) | {"bodies": "rollers", "has_cage": False, "has_pockets": False})
     )
     assert not whirling.has_cage
     without_cage = whirling.select(["cage", "rollers", "pocket"])

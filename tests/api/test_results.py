@@ -143,7 +143,7 @@ def _summary_text(result: Result) -> str:
 
 def test_nothing_is_said_of_a_cage_that_is_not_there(whirling: Result) -> None:
     whirling.scene.effects = SimpleNamespace(
-        **(vars(whirling.scene.effects) | {"bodies": "rollers", "has_cage": False})
+        **(vars(whirling.scene.effects) | {"bodies": "rollers", "has_cage": False, "has_pockets": False})
     )
     for read in (
         whirling.cage_locus,

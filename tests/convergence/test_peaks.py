@@ -32,7 +32,8 @@ def runs() -> dict[float, Result]:
 @pytest.mark.parametrize("every", EVERY[1:])
 def test_peaks_do_not_depend_on_records(runs: dict[float, Result], every: float) -> None:
     one, other = runs[EVERY[0]].peaks, runs[every].peaks
-    assert set(one) == {name for name, _, _ in Simulation(whirling()).bearings[0].model.peak_layout()}
+    names = {name for name, _, _ in Simulation(whirling()).bearings[0].model.peak_layout()}
+    assert set(one) == {name for name in names if not name.startswith("land_")}  # no land guides this cage
     for name in one:
         np.testing.assert_array_equal(one[name], other[name], err_msg=name)
 

@@ -152,15 +152,22 @@ def test_losses_are_minus_the_power_of_all_contact_forces(kit: SimpleNamespace) 
 def test_every_loss_is_a_loss(kit: SimpleNamespace, case: str, share: float) -> None:
     """Sliding friction and damping only ever take energy, tangents or not."""
     result = run(kit, case, 1e-4, rings_share=share)
-    for name in ("traction_outer", "traction_inner", "rib", "front_rib", "pocket", "damping"):
+    there = {field.name for field in result.fields}
+    losses = [
+        name
+        for name in ("traction_outer", "traction_inner", "rib", "front_rib", "pocket", "damping")
+        if f"loss_{name}" in there
+    ]
+    assert {"traction_outer", "traction_inner", "rib", "pocket"} <= set(losses)
+    for name in losses:
         assert result[f"power_{name}"].min() >= 0.0, name
         assert np.diff(result[f"loss_{name}"]).min() >= -1e-12, name
 
 
 def test_without_friction_nothing_is_lost(kit: SimpleNamespace) -> None:
     result = kit.simulate(Effects.frictionless()).run(duration=2e-3)
-    for name in LOSSES:
-        assert not result[f"loss_{name}"].any(), name
+    for name in [field.name for field in result.fields if field.name.startswith("loss_")]:
+        assert not result[name].any(), name
     assert not result.power_loss.any()
     # normal forces of a round ring have no moment about its axis
     assert np.abs(result.inner_torque).max() < 1e-9

@@ -170,7 +170,8 @@ def test_planar_orbit_keeps_angular_momentum(kit: SimpleNamespace) -> None:
 def test_rollers_without_a_cage(kit: SimpleNamespace) -> None:
     result = kit.simulate(PAPER.replace(bodies="rollers")).run(duration=5e-3)
     assert result.success
-    for name in ("pocket_force", "cage_force", "cage_velocity"):
+    assert "pocket_force" not in result
+    for name in ("cage_force", "cage_velocity"):
         assert not result[name].any(), name
     with_cage = kit.simulate(PAPER).run(duration=1e-3)
     geometry, cage = with_cage.scene.bearing.geometry, with_cage.scene.bearing.cage

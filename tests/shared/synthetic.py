@@ -167,6 +167,7 @@ class StubScene:
         oil_fill=0.0,
         bodies="rollers_and_cage",
         has_cage=True,
+        has_pockets=True,
         films=True,
         traction="none",
         rolling_resistance=True,

@@ -286,6 +286,11 @@ class Effects(Model):
         return self.bodies == "rollers_and_cage"
 
     @property
+    def has_pockets(self) -> bool:
+        """Whether rollers can touch the faces of pockets."""
+        return self.has_cage and (self.pocket_bars or self.pocket_ends)
+
+    @property
     def rolling_supply(self) -> float:
         """Share of rolling resistance that the supply of oil leaves (1): `supply`, or that of the state by `oil_fill`."""
         return rolling_supply_of(self.oil_fill).value if self.supply is None else self.supply

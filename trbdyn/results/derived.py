@@ -422,6 +422,9 @@ class Derived(ABC):
 
     def _needs(self, group: str, what: str) -> None:
         if group not in {field.group for field in self.fields}:
+            if group == "pocket" and self.has_cage and not self.scene.effects.has_pockets:
+                limit = "rollers do not touch their pockets where pocket_bars and pocket_ends are off"
+                raise InputError.of(("effects", "pocket_bars"), False, limit)
             raise InputError.of(what, "not saved", f"needs the group '{group}': put it into save_groups")
 
     @property

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from trbdyn.model.motion import History, values_of
+from trbdyn.results.fields import contacts
 from trbdyn.run.options import GROUPS, Group
 
 if TYPE_CHECKING:
@@ -48,20 +49,36 @@ def absent(scene: Scene, *, moves: bool) -> tuple[str, ...]:
     `moves` says whether a ring of the bearing moves by itself, with a shaft or with a housing.
     """
     effects = scene.effects
-    off: list[str] = []
-    lost: list[str] = []
-    if effects.guidance == "rollers":
-        off += ["land_", "inner_torque_land"]
-        lost += ["land", "land_film"]
-    if not effects.oil_fill > 0.0:
-        lost.append("drag")
-    if not effects.pocket_film > 0.0:
-        lost.append("pocket_film")
-    if not moves:
-        lost.append("support")
-    if scene.elastic_cage is None:
-        lost.append("vibration")
-    return (*off, *(f"{kind}_{name}" for name in lost for kind in ("power", "loss")))
+    pockets = effects.has_pockets
+    rolling = effects.films and effects.rolling_resistance
+    slides = effects.lubrication != "full_film" or effects.traction != "none"
+    acts: tuple[tuple[bool, tuple[str, ...], tuple[str, ...]], ...] = (
+        (effects.gravity, ("work_gravity",), ()),
+        (pockets, ("pocket_",), ()),
+        (pockets and slides, ("pocket_friction",), ("pocket",)),
+        (effects.films, _films(), ()),
+        (slides, ("inner_torque_traction", "rib_friction", "front_rib_friction"), ("traction_outer", "traction_inner")),
+        (rolling, ("inner_torque_rolling",), ("rolling",)),
+        (rolling and effects.rolling_pressure_force, (), ("rolling_pressure",)),
+        (effects.back_rib, ("rib_", "outer_rib_", "inner_torque_rib"), ()),
+        (effects.front_rib, ("front_rib_", "outer_front_rib_", "inner_torque_front_rib"), ()),
+        (effects.back_rib and slides, (), ("rib",)),
+        (effects.front_rib and slides, (), ("front_rib",)),
+        (effects.damping != "off", (), ("damping",)),
+        (effects.guidance != "rollers", ("land_", "inner_torque_land"), ("land", "land_film")),
+        (effects.oil_fill > 0.0, (), ("drag",)),
+        (effects.pocket_film > 0.0, (), ("pocket_film",)),
+        (moves, (), ("support",)),
+        (scene.elastic_cage is not None, (), ("vibration",)),
+    )
+    off = [name for on, names, _ in acts if not on for name in names]
+    return (*off, *(f"{kind}_{name}" for on, _, lost in acts if not on for name in lost for kind in ("power", "loss")))
+
+
+def _films() -> tuple[str, ...]:
+    """Fields and peaks of the films of all contacts."""
+    quantities = ("film", "film_parameter", "film_parameter_min", "film_parameter_min_time")
+    return tuple(f"{side}_{quantity}" for side in contacts() for quantity in quantities)
 
 
 def there(fields: Iterable[Field], off: Sequence[str]) -> tuple[Field, ...]:

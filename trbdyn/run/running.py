@@ -435,7 +435,9 @@ class Run:
         for one in self.bearings:
             model = one.of.model
             own = row[at : at + model.peak_length]
-            peaks = peak_table.from_row(own, model.peak_layout()) if own.size else {}
+            names = set(peak_table.names(one.kept.fields))
+            layout = [row for row in model.peak_layout() if row[0] in names]
+            peaks = peak_table.from_row(own, layout) if own.size else {}
             at += model.peak_length
             if success and one.until.wanted and not self.enough:
                 one.doubt(WITHOUT_CONFIDENCE.format(one.until.said or "it was too short for a look"), 4)

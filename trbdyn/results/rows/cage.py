@@ -25,6 +25,10 @@ RECORDS_AT_ONCE: Final = 4096
 """Records whose deformed cages are in memory together."""
 
 
+def has_pockets(seen: Seen) -> bool:
+    return seen.run.scene.effects.has_pockets
+
+
 def has_cage(seen: Seen) -> bool:
     return seen.run.has_cage
 
@@ -46,7 +50,7 @@ def rolls(seen: Seen) -> bool:
 
 
 def drops(seen: Seen) -> bool:
-    return seen.run.has_cage and len(seen.run) > 1 and notes.load_drops(seen.run)
+    return has_pockets(seen) and len(seen.run) > 1 and notes.load_drops(seen.run)
 
 
 def _percentile(of: Callable[[Seen], Array], share: float) -> Callable[[Seen], float]:
@@ -332,7 +336,7 @@ POCKETS: Final = (
         _usual_pocket_force,
         "percentile",
         groups=("pocket",),
-        exists=has_cage,
+        exists=has_pockets,
         interval="motion",
         least=0.1,
         shown=frozenset({"sweep", "page"}),
@@ -343,7 +347,7 @@ POCKETS: Final = (
         "pocket force, largest in the run",
         "N",
         "The hardest hit on a pocket in the whole run.",
-        exists=has_cage,
+        exists=has_pockets,
         least=0.1,
         shown=frozenset({"result", "report", "shaft"}),
         pictures=("pocket_statistics",),
@@ -381,7 +385,7 @@ POCKETS: Final = (
         "count",
         "run",
         groups=("peaks",),
-        exists=has_cage,
+        exists=has_pockets,
     ),
     Number(
         "pocket_impulse_peak",
@@ -392,7 +396,7 @@ POCKETS: Final = (
         "largest",
         "run",
         groups=("peaks",),
-        exists=has_cage,
+        exists=has_pockets,
     ),
     *extreme(
         "land_force_peak",
@@ -417,7 +421,7 @@ POCKETS: Final = (
         "Share of the time for which a pocket is touched.",
         lambda seen: (seen.window["pocket_force"] > 0).any(axis=2).mean(),
         groups=("pocket",),
-        exists=has_cage,
+        exists=has_pockets,
         interval="motion",
         least=1e-3,
         checked=True,
