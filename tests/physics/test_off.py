@@ -17,6 +17,7 @@ import trbdyn as trb
 from trbdyn.reporting.tables import numbers as report_numbers
 from trbdyn.results import fields, peaks
 from trbdyn.results.numbers import of_table, rows
+from trbdyn.run.keeping import absent, there
 
 BASE = trb.cases.scene_30310(3000.0, 4930.0).replace(effects=EVERYTHING)
 TOGETHER = (
@@ -101,3 +102,58 @@ def test_what_is_off_is_in_no_file_summary_and_report(kit: SimpleNamespace, usua
     left = [name for name in left if not name.endswith("_time")]
     left = [name for name in left if not name.rpartition("/")[2].startswith(STAYS.get(effect.name, ()))]
     assert left == []
+
+
+SWITCHES: dict[str, tuple[Any, ...]] = {
+    "gravity": (True, False),
+    "bodies": ("rollers_and_cage", "rollers_and_cage", "rollers_and_spacer", "rollers"),
+    "lubrication": ("mixed", "full_film", "full_film", "boundary", "dry"),
+    "traction": ("muraki_kimura", "coulomb", "none", "none"),
+    "rolling_resistance": (True, False),
+    "hysteresis": (0.0, 0.01),
+    "flooded_gaps": (True, False),
+    "back_rib": (True, False),
+    "front_rib": (True, False),
+    "pocket_bars": (True, False),
+    "pocket_ends": (True, False),
+    "pocket_film": (0.0, 5e-5),
+    "guidance": ("rollers", "inner_land", "outer_land"),
+    "oil_fill": (0.0, 0.1),
+    "damping": ("off", "hunt_crossley", "film"),
+    "planar": (False, False, True),
+}
+ROUND_OFF = 1e-12
+"""In N, N m and W: normal forces have a moment of 1e-17 N m about the axis that they pass through."""
+
+
+@pytest.mark.parametrize("name", ["30310", "LM67048", "NJ308"])
+def test_nothing_that_acts_is_left_out(kit: SimpleNamespace, name: str) -> None:
+    """Each field that a scene's switches leave out is zero, whatever they are together."""
+    random = np.random.default_rng(7)
+    bearing = BASE.bearing if name == "30310" else trb.Bearing.named(name)
+    loads = {"axial_load": 10.0, "radial_load": 4000.0} if bearing.is_cylindrical else {"radial_load": 2000.0}
+    left_out, counted = [], 0
+    for number in range(40):
+        chosen: dict[str, Any] = {key: values[random.integers(len(values))] for key, values in SWITCHES.items()}
+        if chosen["bodies"] != "rollers_and_cage":
+            chosen["guidance"] = "rollers"
+        if bearing.is_cylindrical:
+            chosen |= {"back_rib": True, "front_rib": True}
+        chosen["rolling_pressure_force"] = chosen["rolling_resistance"]
+        scene = BASE.replace(bearing=bearing, effects=EVERYTHING.replace(**chosen, n_slices=4), **loads)
+        try:
+            with warnings.catch_warnings(action="ignore"):
+                sim = trb.Simulation(scene)
+                vector = kit.perturbed(sim, number, back=2.5e-4)
+        except trb.InputError:
+            continue  # switches that exclude each other
+        counted += 1
+        kept = {field.name for field in there(fields.table(), absent(scene, moves=False))}
+        values = sim.record(vector)
+        left_out += [
+            (key, chosen)
+            for key, value in values.items()
+            if key not in kept and np.abs(np.nan_to_num(np.asarray(value, float))).max() > ROUND_OFF
+        ]
+    assert left_out == []
+    assert counted > 10

@@ -69,9 +69,9 @@ class Records(Derived):
         every = {field.name: field.group for field in field_table.table()}
         saved = f"saved groups: {', '.join(self.groups)}"
         if every.get(name) in self.groups:
-            return f"this bearing does not have it, or its file is of an older version; {saved}"
+            return f"this bearing has none, its scene has switched it off, or its file is of an older version; {saved}"
         if name in every:
-            left_out = f"the group '{every[name]}', which save_groups left out or this bearing lacks"
+            left_out = f"the group '{every[name]}', which save_groups left out, or which this bearing or scene has not"
             return f"was not recorded: it belongs to {left_out}; {saved}"
         derived = [entry for entry in super().__dir__() if not entry.startswith("_")]
         near = difflib.get_close_matches(str(name), [*every, *derived], n=3)

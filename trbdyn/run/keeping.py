@@ -55,7 +55,8 @@ def absent(scene: Scene, *, moves: bool) -> tuple[str, ...]:
     acts: tuple[tuple[bool, tuple[str, ...], tuple[str, ...]], ...] = (
         (effects.gravity, ("work_gravity",), ()),
         (pockets, ("pocket_",), ()),
-        (pockets and slides, ("pocket_friction",), ("pocket",)),
+        (pockets and (slides or effects.pocket_film > 0.0), ("pocket_friction",), ()),
+        (pockets and slides, (), ("pocket",)),
         (effects.films, _films(), ()),
         (slides, ("inner_torque_traction", "rib_friction", "front_rib_friction"), ("traction_outer", "traction_inner")),
         (rolling, ("inner_torque_rolling",), ("rolling",)),
