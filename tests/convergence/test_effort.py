@@ -114,7 +114,10 @@ def test_the_smallest_step_is_the_smallest(integrator: str) -> None:
 
 
 def test_slopes_serve_several_solves_while_a_load_changes() -> None:
-    """Taken anew in every solve, they took three quarters of the time of such runs: here 0.75 factorisations a step of a body."""
+    """Where every solve takes new slopes, these cost three quarters of the time of such runs.
+
+    Here a step of a body takes 0.75 factorisations.
+    """
     load = trb.History.ramp(0.0, 4e-3, 4930.0, 1500.0)
     scenery = {"axial_load": load, "ring": "follows", "effects": Effects.standard()}
     stats = run(4e-3, scenery, {"integrator": "multirate"}).stats
