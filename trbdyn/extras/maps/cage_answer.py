@@ -333,7 +333,7 @@ class _Run:
         result = self.simulation.run(
             duration=(turns + 0.2) * self.turn, save_every=self.turn / RECORDS_A_TURN, save_groups=groups
         )
-        parts = {"": result} if isinstance(result, Result) else {name: result[name] for name in result.names}
+        parts = dict(result.by_name)
         for name, part in parts.items():
             when, means = part.turn_means()
             self.times.setdefault(name, []).append(when)
