@@ -14,23 +14,23 @@ from trbdyn.errors import MissingExtra
 EXTRAS: Final = "trbdyn.extras"
 """The package of the extras; each is a package in it."""
 PLACES: Final = {
-    "cage_modes": "elastic.simulated",
-    "displacements": "elastic.simulated",
-    "mode_rows": "elastic.simulated",
-    "cage_stress": "elastic.stress",
-    "force_spectrum": "sound.forces",
-    "octave_levels": "sound.forces",
-    "rattle": "sound.forces",
-    "sound": "sound.forces",
-    "gmsh_model": "cad.opened",
-    "nodes_of": "cad.opened",
-    "opened": "cad.opened",
-    "read_cage": "cad.read",
-    "read_trace": "cad.read_trace",
-    "need_nicegui": "app",
-    "serve": "app.server",
+    "cage_modes": ("elastic.simulated", "an elastic cage"),
+    "displacements": ("elastic.simulated", "the deformed shape of a cage"),
+    "mode_rows": ("elastic.simulated", "an elastic cage"),
+    "cage_stress": ("elastic.stress", "the stress of a cage"),
+    "force_spectrum": ("sound.forces", "a spectrum of forces"),
+    "octave_levels": ("sound.forces", "octave levels"),
+    "rattle": ("sound.forces", "the rattle of rollers"),
+    "sound": ("sound.forces", "sound"),
+    "gmsh_model": ("cad.opened", "a mesh of a drawing"),
+    "nodes_of": ("cad.opened", "a mesh of a drawing"),
+    "opened": ("cad.opened", "a drawing"),
+    "read_cage": ("cad.read", "the drawing of a cage"),
+    "read_trace": ("cad.read_trace", "a measured profile"),
+    "need_nicegui": ("app", "the page"),
+    "serve": ("app.server", "the page"),
 }
-"""Functions of the extras that the core, or another extra, calls, and the module of each."""
+"""Functions of the extras that the core, or another extra, calls; the module of each, and what users call it for."""
 
 
 def of_extras(name: str) -> Any:
@@ -41,7 +41,8 @@ def of_extras(name: str) -> Any:
     MissingExtra
         If its part is not installed.
     """
-    return getattr(module(f"{EXTRAS}.{PLACES[name]}", name), name)
+    place, words = PLACES[name]
+    return getattr(module(f"{EXTRAS}.{place}", words), name)
 
 
 def module(place: str, wanted: str) -> Any:
@@ -51,8 +52,8 @@ def module(place: str, wanted: str) -> Any:
     except ModuleNotFoundError as error:
         if not (error.name or "").startswith(EXTRAS):
             raise
-        missing = place if error.name == EXTRAS else str(error.name)
-        part = f"{missing}.{wanted}".removeprefix(f"{EXTRAS}.").split(".")[0]
+        # where the whole folder is missing, what was asked for tells the part; a name of the package may be the part itself
+        part = f"{place if error.name == EXTRAS else error.name}.{wanted}".removeprefix(f"{EXTRAS}.").split(".")[0]
         raise MissingExtra(
             f"{wanted} needs the part '{part}' of trbdyn, which is not installed: there is no folder trbdyn/extras/{part}"
         ) from None
