@@ -118,7 +118,7 @@ def _locus(ax: Axes, run: Run) -> None:
         ax.plot([], [], color="black", linestyle=LINES[index], linewidth=0.9, label=label)
     reach = 1.15 * max(1.0, float(np.abs(path).max()))
     ax.set(xlim=(-reach, reach), ylim=(-reach, 1.35 * reach), aspect="equal", xticks=(-1, 0, 1), yticks=(-1, 0, 1))
-    ax.set_ylabel("$y/C_{pr}$")
+    ax.set(xlabel="$x/C_{pr}$", ylabel="$y/C_{pr}$")
     numbers = run.numbers
     text = f"from the axis {numbers['whirl_radius_over_cpr']['mean']:.2f}, orbit {numbers['orbit_over_cpr']:.2f}"
     if numbers["cage_motion"] == "circling":
