@@ -99,6 +99,7 @@ WRONG = [
 """Tab, field, what is wrong, what is said, what is right."""
 
 
+@pytest.mark.slow
 def test_ten_wrong_inputs_are_red_at_their_fields(user: Any, server: Any) -> None:
     """One after another: in the units of the page, at the field that was just typed, and correct input clears it. A tab is in the
     address, so that a reload and the browser's button back come to tabs.
@@ -191,6 +192,7 @@ def test_from_nothing_to_a_signed_sheet(user: Any, server: Any, name: str) -> No
     assert user.browser.errors == []
 
 
+@pytest.mark.slow
 def test_a_run_can_be_stopped_and_survives_the_browser(user: Any, shared: Any) -> None:
     opened(user, shared)
     ready(user)

@@ -37,6 +37,7 @@ def arguments(design: Design) -> dict[str, Any]:
     return {"tables": json.loads(json.dumps(made.tables)), "wants": design.wants, "planned": design.planned}
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("drawn_only")
 def test_a_pair_is_run_and_shown(tmp_path: Path) -> None:
     design = Design(typed={**SHORT, "scene.axial_load": "1000"}, pair=True, wants=["torque", "life", "stiffness"])
@@ -89,6 +90,7 @@ def test_a_planned_run_is_the_case_beside_it(tmp_path: Path, monkeypatch: pytest
     assert names["result"].summary()["torque"] == trb.load("run.h5").summary()["torque"]
 
 
+@pytest.mark.slow
 def test_a_task_says_what_is_wrong_and_can_be_stopped(tmp_path: Path) -> None:
     bench = Bench.open(tmp_path)
     given = arguments(Design(typed={**SHORT, "scene.axial_load": "1e9"}))
@@ -111,6 +113,7 @@ def test_a_task_says_what_is_wrong_and_can_be_stopped(tmp_path: Path) -> None:
     assert len(trb.load(job.folder / "run.h5")) > 1
 
 
+@pytest.mark.slow
 def test_stop_while_a_report_is_drawn_loses_nothing(tmp_path: Path) -> None:
     bench = Bench.open(tmp_path)
     job = bench.start("run", "drawn", arguments(Design(typed={**SHORT, "run.revolutions": "0.05"})), {})

@@ -63,6 +63,7 @@ def loads(bearing: trb.Bearing) -> np.ndarray:
     return np.array(found)
 
 
+@pytest.mark.slow
 def test_the_shipped_cage_through_step(rig: trb.Bearing, read: Any) -> None:
     found = read
     assert found.n_pockets == 12

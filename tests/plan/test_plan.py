@@ -112,6 +112,7 @@ class TestCandidates:
             np.testing.assert_array_equal(other.view()[name], simulation.view()[name])
 
 
+@pytest.mark.slow
 def test_what_is_promised_is_within_the_wish(proposal: Plan) -> None:
     assert proposal.reached
     assert 0.0 < proposal.promised["torque"] <= 0.05

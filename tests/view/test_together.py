@@ -45,6 +45,7 @@ def test_the_bearings_stand_on_their_shaft(pair: AssemblyResult, browser: Any, t
     assert not [address for address in browser.requests if address.startswith("http")]
 
 
+@pytest.mark.slow
 def test_a_roller_of_either_bearing_is_picked_and_the_shaft_hidden(
     pair: AssemblyResult, browser: Any, tmp_path: Path
 ) -> None:
@@ -84,6 +85,7 @@ def test_the_report_has_the_shaft_and_each_bearing(pair: AssemblyResult, browser
     assert browser.js("[...document.querySelectorAll('img')].every((one) => one.naturalWidth > 100)")
 
 
+@pytest.mark.slow
 def test_pictures_go_into_a_folder_for_each_bearing(pair: AssemblyResult, tmp_path: Path) -> None:
     written = trb.plot.all(
         pair, tmp_path, ["shaft_orbits", "load_zones", "preload_diagram", "shaft_motion", "ring_orbit"]
