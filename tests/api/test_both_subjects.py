@@ -185,7 +185,6 @@ def test_a_full_memory_ends_a_run(name: str, monkeypatch: pytest.MonkeyPatch) ->
     assert "memory is nearly full" in result.message
 
 
-@LONG_OF_A_PAIR
 def test_a_run_that_was_cut_off_goes_on(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Ctrl-C in the middle, then a resumed run: the same bits as a run without a break."""
     how: dict[str, Any] = {"duration": 1e-3, "save_every": 2e-5, "checkpoint_every": 2e-4}

@@ -84,7 +84,6 @@ def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("search")
 
 
-@pytest.mark.slow
 def test_a_search_finds_a_better_design_and_goes_on_in_its_folder(kept: Path) -> None:
     tolerances = {RADIUS: (-1.0, 1.0)}
     limits = {"film_parameter_inner": (0.01, None)}
@@ -141,7 +140,6 @@ def test_only_designs_that_longer_runs_confirm_are_chosen(monkeypatch: pytest.Mo
     assert np.median([one.inputs[RADIUS] for one in found.designs[-8:]]) < 65.0
 
 
-@pytest.mark.slow
 def test_a_longer_run_that_fails_refuses_the_design(monkeypatch: pytest.MonkeyPatch) -> None:
     def fails_later(study: Any, **how: Any) -> xarray.Dataset:
         data = whirls_later(study, **how)

@@ -136,7 +136,6 @@ def test_a_balance_with_a_linear_law(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "stable balance" in str(found)
 
 
-@pytest.mark.slow
 def test_a_balance_that_runs_away(monkeypatch: pytest.MonkeyPatch) -> None:
     """P = P0 exp(b t), t = T + R P has no solution beyond b R P = 1: T = (ln[1/(b R P0)] - 1)/b."""
     r, b, p0 = resistance(), 0.03, 8.0

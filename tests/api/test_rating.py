@@ -511,7 +511,6 @@ def test_a_scene_whose_load_changes_says_that_its_sheet_is_of_the_start(spike: t
     )
 
 
-@pytest.mark.slow
 def test_a_load_that_rotates_counts() -> None:
     """4 kN that turn with the shaft beside 3 kN that rest: the mean of P^(10/3) over a turn, by hand; a wheel with 4 kN alone is
     as one with 4 kN that rest.

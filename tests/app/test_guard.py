@@ -99,7 +99,6 @@ def test_only_the_page_itself_is_answered(shared: Any, entered: tuple[str, str])
     assert shaken(shared, base, Origin=own) == 403
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() != 0, reason="only root becomes another user")
 def test_another_user_finds_nothing_that_opens_the_page(tmp_path: Path) -> None:
     """As `nobody`: command lines in /proc, and the files that are there."""

@@ -90,7 +90,6 @@ def test_a_planned_run_is_the_case_beside_it(tmp_path: Path, monkeypatch: pytest
     assert names["result"].summary()["torque"] == trb.load("run.h5").summary()["torque"]
 
 
-@pytest.mark.slow
 def test_a_task_says_what_is_wrong_and_can_be_stopped(tmp_path: Path) -> None:
     bench = Bench.open(tmp_path)
     given = arguments(Design(typed={**SHORT, "scene.axial_load": "1e9"}))

@@ -126,7 +126,6 @@ def test_mass_is_that_of_the_body(bearing: trb.Bearing) -> None:
     )  # a thinner wall touches the end's sphere elsewhere
 
 
-@pytest.mark.slow
 def test_a_case_with_an_elastic_drawn_cage_runs(scene: trb.Scene, drawing: Path, tmp_path: Path) -> None:
     result = trb.Simulation(scene).run(duration=2e-4, save_every=1e-5, output=tmp_path / "run.h5")
     assert result.success

@@ -299,7 +299,7 @@ def test_records_of_the_outer_ribs() -> None:
     assert not [name for name in other.peaks if name.startswith("outer_rib")]
     for name, says in {
         "front_rib_pressure": "this bearing has none",
-        "outer_rib_load": "or which this bearing or scene has not",
+        "outer_rib_load": "or which this bearing or its scene does not have",
     }.items():
         with pytest.raises(trb.InputError, match=says):
             _ = other[name]

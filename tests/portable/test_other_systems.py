@@ -7,8 +7,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
 HERE = Path(__file__).parent
 
 IMPORTS = """
@@ -102,7 +100,6 @@ def test_every_module_is_imported_without_what_only_unix_has(tmp_path: Path) -> 
     assert int(said.split()[0]) > 150
 
 
-@pytest.mark.slow
 def test_a_scene_a_resumed_run_a_report_and_a_study_in_processes(tmp_path: Path) -> None:
     """Files that are open are not renamed, nobody locks a file twice, and nothing is left behind."""
     assert run_without(WORK, tmp_path).split() == ["cut.h5", "report.html", "run.h5", "study"]

@@ -71,7 +71,7 @@ class Records(Derived):
         if every.get(name) in self.groups:
             return f"this bearing has none, its scene has switched it off, or its file is of an older version; {saved}"
         if name in every:
-            left_out = f"the group '{every[name]}', which save_groups left out, or which this bearing or scene has not"
+            left_out = f"the group '{every[name]}', which save_groups left out, or which this bearing or its scene does not have"
             return f"was not recorded: it belongs to {left_out}; {saved}"
         derived = [entry for entry in super().__dir__() if not entry.startswith("_")]
         near = difflib.get_close_matches(str(name), [*every, *derived], n=3)
