@@ -2,8 +2,8 @@
 
 Worker processes of studies take seconds to start: their tasks are done in this process, in tests that do not ask for `workers`.
 
-Where rollers vibrate, a run repeats a piece of up to 80 ms with tighter tolerances, which takes much longer than a short run: in
-tests that ask for `probes` alone.
+Where rollers vibrate, a run is repeated with tighter tolerances, which takes much longer than a short run: in tests that ask for
+`probes` alone.
 
 Linear algebra takes one thread: several processes with two threads each wait for each other most of the time.
 
@@ -99,7 +99,7 @@ JUDGED: Final[list[Any]] = []
 
 @pytest.fixture
 def probes(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Runs of this test repeat a piece with tighter tolerances where rollers vibrate."""
+    """Runs of this test are repeated with tighter tolerances where rollers vibrate."""
     monkeypatch.setattr("trbdyn.run.vibrations.Vibrations.judge", JUDGED[0])
 
 

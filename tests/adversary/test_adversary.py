@@ -16,7 +16,6 @@ from judge import MOST_STEPS, bounded_run, by_chance, judge, scene_duration
 from random_scenes import KINDS, ORDINARY, draw, make
 
 import trbdyn as trb
-from trbdyn.run import vibrations
 
 HERE = Path(__file__).resolve().parent
 
@@ -84,29 +83,20 @@ def test_a_difference_by_chance_gives_no_warning(kind, seed):
     assert run.warnings == ()
 
 
-def test_what_steps_take_after_a_drop_of_load_is_measured_from_the_drop_on():
-    """A wheel hub without damping, whose load falls to a tenth at 5.4 ms and comes back at 12.5 ms, loses a fifth too little
-    between them by CVODE, and a third with steps of each body; a piece that begins later, and ends under the full load, shows
-    nothing.
+def test_what_steps_take_after_a_drop_of_load_is_seen_in_the_whole_run():
+    """A wheel hub without damping, whose load falls to a tenth at 5.4 ms and comes back at 12.5 ms, loses a third too little
+    between them, and 3.5 +/- 2.4 % in all of its run.
     """
     scene = make(draw("hub", 98000011))
-    drop, back = scene.axial_load.times[0], scene.axial_load.times[2]
     run = bounded_run(trb.Simulation(scene), scene_duration(scene), MOST_STEPS)
     said = next(text for text in run.warnings if "vibrate" in text)
-    assert f"{1e3 * (back - drop):.2g} ms from {drop:.6g} s on were repeated" in said
-    loss = re.search(r"the loss is ([\d.]+) \+/- ([\d.]+) % too low", said)
+    loss = re.search(r"the loss is ([\d.]+) to ([\d.]+) % too low", said)
     assert loss is not None, said
-    assert 10.0 < float(loss[1]) < 50.0
+    assert 0.5 < float(loss[1]) < 3.5 < float(loss[2])
 
 
-@pytest.mark.parametrize("unclear", [True, False])
-def test_an_interval_that_leaves_much_open_is_no_proof(unclear, monkeypatch):
-    """The pieces that are repeated show next to no difference by chance, within 24 and 13 %; the loss is a tenth too low. So also
-    by the rule of vibrations that neither grow nor are most of the loads.
-    """
-    if not unclear:
-        monkeypatch.setattr(vibrations, "MOST", np.inf)
-        monkeypatch.setattr(vibrations, "GROWING", np.inf)
+def test_an_interval_that_leaves_much_open_is_no_proof():
+    """One piece shows next to no difference by chance, within 24 %; the loss is a tenth too low."""
     table = ORDINARY | draw("pieces", 99000021)
     scene = make(table)
     sim = trb.Simulation(scene, accuracy=table["accuracy"], integrator="bdf")

@@ -11,8 +11,8 @@ from random_scenes import ORDINARY, draw, make
 import trbdyn as trb
 from trbdyn.errors import InputError
 from trbdyn.results.numbers import TABLE
-from trbdyn.run.check import CLEAR, judged
-from trbdyn.run.repeat import Piece, Repeating, Sample, pieces
+from trbdyn.run.judged import CLEAR, Piece, Sample, judged
+from trbdyn.run.repeat import Repeating, pieces
 
 DURATION = 0.02
 
@@ -86,7 +86,7 @@ def test_a_long_run_is_checked_in_pieces_from_its_states(run: trb.Result) -> Non
         assert run.time[piece.record] == piece.begin <= piece.since < piece.until <= run.time[-1]
     late = chosen[1]
     sample = repeating.sample(late)
-    assert repeating.pair(sample, moved=False)
+    assert repeating.pair(sample, shifted=False)
     # what was repeated from a state in the middle of the run is what the run did there
     window = run.window(late.since, late.until)
     assert sample.own[-1]["power_loss"] == pytest.approx(float(window.power_loss.mean()), rel=5e-3)

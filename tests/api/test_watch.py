@@ -7,14 +7,12 @@ import re
 from types import SimpleNamespace
 from typing import Any
 
-import numpy as np
 import pytest
 
 import trbdyn as trb
 from trbdyn.model.cases import paper_30310
 from trbdyn.run.energies import LEAST_STORED_SHARE
 from trbdyn.run.options import ACCURACY
-from trbdyn.run.probe import _difference
 from trbdyn.run.vibrations import Seen as Vibrating
 from trbdyn.run.vibrations import Vibrations
 from trbdyn.run.watch import LOST_SHARE, STOP, WARN, WINDOWS, Watch
@@ -226,14 +224,14 @@ def hardly_loaded(seed: int = 1) -> trb.Scene:
 
 @pytest.mark.usefixtures("probes")
 def test_what_the_steps_take_from_vibrations_is_seen_and_measured():
-    """With 'fast' the load is too low, by tight runs by 6.5 % from 10 to 30 ms and by 5.6 % from 20 to 90 ms: the steps take what
-    should vibrate, and little is left to see."""
+    """With 'fast' the load is too low, by tight runs by 6.5 % from 10 to 30 ms, and by half of it in all, as vibrations grow for
+    10 ms: the steps take what should vibrate, and little is left to see."""
     with pytest.warns(trb.RunWarning, match="in place of damping"):
         result = trb.Simulation(hardly_loaded(), accuracy="fast", integrator="bdf").run(duration=0.03, save_every=1e-3)
     (text,) = result.warnings
-    low = re.search(r"the load of a roller (\S+) \+/- (\S+) % too low", text)
+    low = re.search(r"the load of a roller is (\S+) to (\S+) % too low", text)
     assert low is not None, text
-    assert abs(float(low[1]) - 6.0) < 2.5 * float(low[2])
+    assert 1.5 < float(low[1]) < float(low[2]) < 7.0
     assert "effects.damping" not in text, "damping is on"
 
 
@@ -246,32 +244,11 @@ def test_vibrations_that_the_steps_follow_are_no_reason_to_warn():
     assert result.warnings == ()
 
 
-@pytest.mark.parametrize(
-    ("off", "scatter", "certain", "possible"),
-    [(0.0, 0.2, False, False), (0.03, 0.2, False, True), (0.3, 0.2, True, True), (0.005, 1e-4, False, False)],
-)
-def test_a_difference_is_said_beyond_the_scatter_of_runs_that_are_as_good(off, scatter, certain, possible):
-    """What lies within the scatter is said only where vibrations grow on, as without damping."""
-    fine = 1.0 + off + scatter * np.tile([1.0, -1.0], 4)
-    difference = _difference(10.0 * fine, np.full(8, 10.0))
-    assert difference.value == pytest.approx(off)
-    assert difference.notable(certain=True) == certain
-    assert difference.notable(certain=False) == possible
-
-
-@pytest.fixture
-def short_probes(probes, monkeypatch):
-    """The repetition that decides about a warning is no longer than the first one: what it says stands in other tests."""
-    monkeypatch.setattr("trbdyn.run.vibrations.LONGER", 20e-3)
-    monkeypatch.setattr("trbdyn.run.vibrations.STEPS_LONGER", 20_000)
-
-
-@pytest.mark.usefixtures("short_probes")
+@pytest.mark.usefixtures("probes")
 def test_a_run_in_short_pieces_is_watched_as_one():
-    scene = hardly_loaded().replace(axial_load=150.0, radial_load=0.0)
-    sim = trb.Simulation(scene, accuracy="fast")
+    sim = trb.Simulation(loose_scene())
     with pytest.warns(trb.RunWarning, match="vibrate") as said:
-        warned = [bool(sim.run(duration=2e-3).warnings) for _ in range(4)]
+        warned = [bool(sim.run(duration=3e-3).warnings) for _ in range(4)]
     assert all(warned[2:])
     assert sum("vibrate" in str(one.message) for one in said) == 1, "once on the screen, in each result"
 
@@ -288,7 +265,7 @@ def test_energy_that_is_off_by_little_in_each_piece_is_seen_over_all_of_them():
     assert any("from 0 s to" in text for text in found)
 
 
-@pytest.mark.usefixtures("short_probes")
+@pytest.mark.usefixtures("probes")
 def test_rollers_that_bounce_without_damping_are_said():
     """Losses are 9, 11, 22 and 31 W with finer and finer tolerances: the integration decides about the vibrations."""
     with pytest.warns(trb.RunWarning, match="vibrate on their raceways"):

@@ -21,7 +21,8 @@ from trbdyn.reporting.inputs import rows
 from trbdyn.reporting.page import page
 from trbdyn.reporting.verdict import verdict
 from trbdyn.results.numbers import TABLE
-from trbdyn.run.check import Check, Checked
+from trbdyn.run.check import Check
+from trbdyn.run.judged import Checked
 
 
 @pytest.fixture(scope="module")

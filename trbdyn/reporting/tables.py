@@ -16,7 +16,7 @@ from trbdyn.base.shown import Shown
 from trbdyn.reporting.inputs import Row
 from trbdyn.results.number import Number
 from trbdyn.results.numbers import rows
-from trbdyn.run.check import Checked
+from trbdyn.run.judged import Checked
 from trbdyn.standards.sheet import life_text
 
 SENTENCES: Final = ("_note", "_reason")

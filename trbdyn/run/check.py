@@ -12,14 +12,10 @@ creeps for seconds (docs/theory/numerics.md#check-of-a-run).
 
 from __future__ import annotations
 
-import math
 import time as clock
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
-
-import numpy as np
-from scipy.special import stdtrit
 
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.base.validation import number_of
@@ -27,15 +23,9 @@ from trbdyn.errors import InputError
 from trbdyn.results import numbers as table
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.result import Result
-from trbdyn.run.repeat import DEARER, Piece, Repeating, Sample, pieces
+from trbdyn.run.judged import CLEAR, MOST_PAIRS, Checked, Piece, Sample, judged
+from trbdyn.run.repeat import DEARER, Repeating, pieces
 
-CLEAR: Final = 0.03
-"""Share of a number within which it must be known to be right."""
-YARDSTICK: Final = 1e-3
-"""Share of a number within which repetitions with tighter tolerances are right themselves (`benchmarks/check_held.py` compares
-those of 'reference' with a tenth of them). No check can tell less."""
-MOST_PAIRS: Final = 6
-"""Pairs of repetitions of a whole run at most."""
 BUDGET_S: Final = 2.0
 """Processor time of a check (s), or `BUDGET_SHARE` of that of the run if it is more."""
 BUDGET_SHARE: Final = 0.1
@@ -45,52 +35,6 @@ SLOW: Final = "orbit of the cage, spacing of the rollers and settling: their mem
 
 NOTHING: Final = "Nothing was checked: "
 """How the note begins of a run that cannot be repeated."""
-
-
-@dataclass(frozen=True)
-class Checked:
-    """What a check has found of a number.
-
-    Attributes
-    ----------
-    bias : float
-        What the tolerances of the run do to it, over its size: positive where the run has too much.
-    half_width : float
-        Half of the 95 % confidence interval of the bias, over the value.
-    scatter : float
-        Standard deviation over repetitions that are as good, over the value.
-    degrees : int
-        Degrees of freedom that the scatter is known by.
-    answer : {'clear', 'biased', 'unsettled'}
-        Known to be right within `CLEAR`; known to be wrong by more than the interval of its bias, and not known to be within
-        `CLEAR`; or not known.
-    """
-
-    bias: float
-    half_width: float
-    scatter: float
-    answer: str
-    degrees: int
-
-    @property
-    def error(self) -> float:
-        """Error over the value that the number may have in this run: of bias, its interval, the scatter, of which 95 of 100 runs
-        keep within Student's t, and the repetitions with tighter tolerances themselves.
-        """
-        scatter = float(stdtrit(self.degrees, 0.975)) * self.scatter if self.degrees else math.inf
-        return abs(self.bias) + self.half_width + scatter + YARDSTICK
-
-    def __str__(self) -> str:
-        low, high = (100.0 * (self.bias + sign * self.half_width) for sign in (-1.0, 1.0))
-        if not self.error < 1.0:
-            return "not known: it scatters too much, or too little of the run was repeated"
-        if self.answer == "clear":
-            return f"right within {100.0 * self.error:.2g} %"
-        if self.answer == "biased":
-            way = "high" if self.bias > 0.0 else "low"
-            least, most = sorted(abs(end) for end in (low, high))
-            return f"{least:.2g} to {most:.2g} % too {way} by the tolerances of the run"
-        return f"not known better than within {100.0 * self.error:.2g} %"
 
 
 @dataclass(frozen=True)
@@ -231,7 +175,7 @@ class _Checking:
         repeating = self.repeating
         sample = repeating.sample(piece)
         for pair in range(MOST_PAIRS):
-            if not repeating.pair(sample, moved=pair > 0):
+            if not repeating.pair(sample, shifted=pair > 0):
                 break
             if all(judged(name, [sample]).answer != "unsettled" for name in sample.own[0] if sample.has(name)):
                 break
@@ -245,7 +189,7 @@ class _Checking:
         for piece in all_pieces:
             before = clock.process_time()
             sample = self.repeating.sample(piece)
-            self.repeating.pair(sample, moved=True)
+            self.repeating.pair(sample, shifted=True)
             samples.append(sample)
             now = clock.process_time()
             if now - self.began + (now - before) > self.budget:
@@ -278,32 +222,3 @@ class _Checking:
 
 def _times(count: int) -> str:
     return "once" if count == 1 else f"{count} times"
-
-
-def judged(name: str, samples: Sequence[Sample]) -> Checked:
-    """Bias, its interval and scatter of a number: over pieces that are repeated once each, or over one that is repeated often."""
-    sizes = [[abs(run[name]) for one in samples for run in runs(one)] for runs in (lambda s: s.own, lambda s: s.tight)]
-    scale = max(float(np.mean(size)) for size in sizes)
-    if scale == 0.0:
-        return Checked(0.0, 0.0, 0.0, "clear", len(samples))
-    squares, degrees = 0.0, 0
-    for one in samples:
-        for runs in (one.own, one.tight):
-            values = np.array([run[name] for run in runs]) / scale
-            squares += float(np.sum((values - values.mean()) ** 2))
-            degrees += values.size - 1
-    scatter = math.sqrt(squares / max(degrees, 1))
-    off = np.array([(_mean(one.own, name) - _mean(one.tight, name)) / scale for one in samples])
-    errors = [scatter**2 * (1.0 / len(one.own) + 1.0 / len(one.tight)) for one in samples]
-    # pieces that differ by more than their own scatter tell how far others, which were not repeated, may be off
-    between = float(np.var(off, ddof=1)) if off.size > 1 else 0.0
-    error = max(float(np.mean(errors)), between) / off.size
-    known = degrees if off.size == 1 else off.size - 1
-    bias, half = float(off.mean()), float(stdtrit(known, 0.975)) * math.sqrt(error) if known else math.inf
-    if abs(bias) + half < CLEAR:
-        return Checked(bias, half, scatter, "clear", degrees)
-    return Checked(bias, half, scatter, "biased" if abs(bias) > max(half, CLEAR) else "unsettled", degrees)
-
-
-def _mean(runs: Sequence[Mapping[str, float]], name: str) -> float:
-    return float(np.mean([run[name] for run in runs]))

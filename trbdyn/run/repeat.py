@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Any, Final
 
 import numpy as np
@@ -20,14 +19,12 @@ from trbdyn.model.scene import Scene
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.number import Number, Seen
 from trbdyn.results.result import Result
-from trbdyn.run.options import ACCURACY, OF_ONE_RUN, RunOptions
+from trbdyn.run.judged import Piece, Sample, moved, tighter
+from trbdyn.run.options import OF_ONE_RUN, RunOptions
 from trbdyn.run.replay import NEEDED, Replay
 from trbdyn.run.running import Run, output_times
 from trbdyn.run.simulation import Simulation
 
-MOVED: Final = 1e-6
-"""Share by which the numbers of a state are moved: enough for bodies that hit each other to go ways of their own; a thousandth
-would be another problem."""
 STRATA: Final = 8
 """Pieces over which a run is divided that is too long to be repeated."""
 LEFT_OUT: Final = 5e-3
@@ -38,33 +35,8 @@ LEAST_RECORDS: Final = 8
 """Records of the run in a piece below which its numbers there come from repetitions alone."""
 UNKNOWN_COST: Final = 1.0
 """Time of a second of the bearing (s) where a result does not tell what it took: about real time."""
-FINER: Final = 0.1
-"""Factor of tolerances that are those of 'reference' already."""
 DEARER: Final = 6.0
 """Expected time of a tight repetition over that of one with the run's own tolerances, before any was made."""
-
-
-@dataclass(frozen=True)
-class Piece:
-    """A part of a run from a record on, between two times (s); it is compared from `since` on."""
-
-    record: int
-    begin: float
-    since: float
-    until: float
-
-
-@dataclass
-class Sample:
-    """Numbers of a piece: of the run itself and of repetitions that are as good, and of tight ones."""
-
-    piece: Piece
-    own: list[dict[str, float]] = field(default_factory=list)
-    tight: list[dict[str, float]] = field(default_factory=list)
-
-    def has(self, name: str) -> bool:
-        """Whether all of them have a number."""
-        return all(name in run for run in (*self.own, *self.tight))
 
 
 class Repeating:
@@ -80,7 +52,7 @@ class Repeating:
         known = set(RunOptions.model_fields) - set(OF_ONE_RUN) - {"checkpoint_every"}
         self._own = {name: value for name, value in given.items() if name in known and value is not None}
         self._own["when_wrong"] = "go_on"
-        self._tight = self._own | tighter(RunOptions(**self._own))
+        self._tight = self._own | tighter(RunOptions(**self._own)) | {"integrator": "bdf"}
         self._every = float(np.median(np.diff(self.time)))
         self._replay: Replay | None = None
         has_motion = set(NEEDED) <= set(self.first.groups)
@@ -125,21 +97,21 @@ class Repeating:
         parts = {name: part.window(piece.begin, piece.until) for name, part in self.parts.items()}
         return Sample(piece, [self._numbers(parts, piece.since, piece.since)])
 
-    def pair(self, sample: Sample, *, moved: bool) -> bool:
+    def pair(self, sample: Sample, *, shifted: bool) -> bool:
         """Repeat a piece with the run's own tolerances from a state that is moved, and with tighter ones, from such a state if
-        `moved`. False where a repetition did not come to its end.
+        `shifted`. False where a repetition did not come to its end.
         """
         piece = sample.piece
         averaged = self.window if piece == self.whole else piece.since
-        own = self._repeat(piece, self._own, moved=True)
-        tight = None if own is None else self._repeat(piece, self._tight, moved=moved)
+        own = self._repeat(piece, self._own, shifted=True)
+        tight = None if own is None else self._repeat(piece, self._tight, shifted=shifted)
         if own is None or tight is None:
             return False
         sample.own.append(self._numbers(own, piece.since, averaged))
         sample.tight.append(self._numbers(tight, piece.since, averaged))
         return True
 
-    def _repeat(self, piece: Piece, options: Mapping[str, Any], *, moved: bool) -> Mapping[str, Result] | None:
+    def _repeat(self, piece: Piece, options: Mapping[str, Any], *, shifted: bool) -> Mapping[str, Result] | None:
         """A repetition of a piece with these options, not watched; None where it fails."""
         assert self.subject is not None
         with warnings.catch_warnings():
@@ -149,8 +121,8 @@ class Repeating:
             if piece.record or not math.isclose(piece.begin, sim.time, abs_tol=1e-12):
                 self._replay = self._replay or Replay(self.first)
                 vector = self._replay.state(piece.record)
-            if moved:
-                vector = vector * (1.0 + MOVED * self._random.standard_normal(vector.size))
+            if shifted:
+                vector = moved(vector, self._random)
             sim.set_state(vector, piece.begin)
             every = min(self._every, (piece.until - piece.since) / (2 * LEAST_RECORDS))
             times = output_times(piece.begin, piece.until, every)
@@ -208,11 +180,3 @@ def _jumps(run: Repeating) -> list[tuple[float, float]]:
     knots = knots[(knots > run.whole.begin) & (knots < run.whole.until)]
     chains = np.split(knots, np.flatnonzero(np.diff(knots) > 2.0 * LEFT_OUT) + 1)
     return [(float(chain[0]), float(chain[-1])) for chain in chains if chain.size]
-
-
-def tighter(options: RunOptions) -> dict[str, Any]:
-    """Options of a repetition that is right: tolerances of 'reference', or a tenth of smaller ones, and every force exact."""
-    own, reference = options.tolerances.model_dump(), ACCURACY["reference"].model_dump()
-    finest = all(own[name] < 2.0 * value for name, value in reference.items())
-    values = {name: FINER * own[name] if finest else min(own[name], value) for name, value in reference.items()}
-    return {"accuracy": "reference", "rings_share": 0.0, "impact_share": None, "integrator": "bdf", **values}

@@ -3,14 +3,14 @@
 
 Steps that do not resolve a vibration take energy from it, as damping does: it is then smaller than it is in the bearing, and
 with it loads, rolling resistance and slip. The residual of the energy audit beside the energy that damping took tells how much.
-Where that is more than `SHARE`, and large enough beside the elastic energy, a piece of the run is repeated with tighter
-tolerances.
+Where that is more than `SHARE`, and large enough beside the elastic energy, the run is checked: a piece of it, or all of it, is
+repeated with tighter tolerances.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from trbdyn.model.motion import History
 from trbdyn.run.energies import LEAST_ENERGY, LEAST_STORED_SHARE, Span, missing
-from trbdyn.run.probe import SHORTEST, Probe, probe, reached
+from trbdyn.run.stretch import SHORTEST, Measured, Stretch
 from trbdyn.statics.seat import Seating
 
 if TYPE_CHECKING:
@@ -30,36 +30,30 @@ Array = NDArray[np.float64]
 SHARE: Final = 0.25
 """Share of the energy fed into vibrations that the integration may take in place of damping: so much of the vibrations, and of
 what they do to losses and loads, is missing (N12)."""
-GROWING: Final = 0.9
-"""The same from which on vibrations would grow to more than ten times what is left of them, longer than a probe lasts (N12)."""
 MEMORY: Final = 5e-3
 """Time over which vibrations add up before the damping of a lightly loaded contact takes them (s)."""
 SIZE: Final = 0.01
 """Energy that is missing in `MEMORY`, over the elastic energy, below which it is too little to change a load."""
-MOST: Final = 1.0
-"""The same from which on vibrations are most of what the contacts hold, so that a probe of one piece scatters with them."""
 SIZE_UNDAMPED: Final = 2e-4
 """The same where nothing damps: vibrations of rollers that carry hardly any load then change how long these roll in contact, and
 with that the rolling resistance, while the elastic energy lies in others."""
 LENGTH: Final = 20e-3
-"""Bearing time of a probe at most (s)."""
-LONGER: Final = 80e-3
-"""The same of the one that repeats a difference."""
+"""Bearing time of the piece that is repeated first, at most (s)."""
 GROWTH: Final = 10e-3
-"""Time at the beginning of a probe that is left to vibrations to grow to their size (s); half of a shorter one."""
+"""Time at its beginning that is left to vibrations to grow to their size (s); half of a shorter one."""
 STEPS: Final = 20_000
-"""Steps of a probe with tighter tolerances at most, or `STEPS_SHARE` of the simulation's own steps if that is more."""
-STEPS_LONGER: Final = 60_000
-"""The same of the longer one."""
+"""Steps of that piece with tighter tolerances at most, or `STEPS_SHARE` of the simulation's own steps if that is more."""
+STEPS_OF_A_PAIR: Final = 60_000
+"""Expected steps up to which the whole simulation is repeated; of a longer one a stretch that takes as many."""
 STEPS_IN_ALL: Final = 80_000
-"""The same of all probes of a simulation."""
+"""Steps after which no further pair is begun."""
+STEPS_OF_SIMULATION: Final = 160_000
+"""The same of all that is repeated in a simulation of several runs."""
 STEPS_SHARE: Final = 0.05
+MUCH_LONGER: Final = 2.0
+"""Factor of the length of a simulation from which on it is checked again, as vibrations may have grown slowly."""
 LEAST_STEPS: Final = 2000
-"""Steps below which no further probe is begun."""
-OPEN: Final = 0.1
-"""Difference that a probe must exclude."""
-OPEN_UNCLEAR: Final = 0.05
-"""The same where vibrations grow or are most of the loads."""
+"""Steps below which nothing is repeated any more."""
 LEFT_OPEN: Final = 3.0
 """Losses over the kinetic energy and over the relative tolerance, below which the losses are measured again: steps may change the
 kinetic energy of a roller by twice that tolerance."""
@@ -87,10 +81,14 @@ class Seen:
     """The span in which the integration took most from vibrations."""
     jump: Span | None = None
     """The latest span in which a jump of a load or a speed began."""
-    probed: Probe | None = None
-    notable: bool = True
-    probe_steps: int = 0
-    probed_size: float = 0.0
+    measured: Measured | None = None
+    """What it does to losses and loads; None where that could not be measured."""
+    measured_size: float = 0.0
+    """Size of the vibrations that were measured, see `Suspect`."""
+    measured_until: float = -math.inf
+    """Time up to which the simulation had come then (s)."""
+    steps: int = 0
+    """Steps with tighter tolerances that were taken for it."""
 
 
 class Vibrations:
@@ -107,8 +105,8 @@ class Vibrations:
             self._seen.jump = span
 
     def judge(self, run: Span, now: dict[str, float], time: float) -> str | None:
-        """What the integration takes from vibrations up to the end of a run, in words, if it does something to losses or loads:
-        measured by a probe.
+        """What the integration takes from vibrations up to the end of a run, in words, if losses or loads are not known
+        to be right with it.
         """
         seen = self._seen
         self._suspect(run, now, time)
@@ -117,52 +115,43 @@ class Vibrations:
         if seen.suspect is None:
             return None
         suspect = seen.suspect
-        # with next to no damping large vibrations go on growing, and where they are most of the elastic energy a probe scatters
-        # with them: a difference within the scatter is then no proof that there is none
-        unclear = suspect.size > (SIZE if suspect.share > GROWING else MOST)
-        most = OPEN_UNCLEAR if unclear else OPEN
-        if suspect.size > seen.probed_size and self._probe(suspect, LENGTH, STEPS):
-            seen.probed_size = suspect.size
-            seen.notable = seen.probed is None or seen.probed.notable(certain=not unclear) or seen.probed.leaves(most)
-            if seen.notable and seen.probed is not None:
-                self._probe(suspect, LONGER, STEPS_LONGER)
-                seen.notable = seen.probed.notable(certain=True) or seen.probed.leaves(most)
-        if not seen.notable:
+        longer = time - self._whole.since > MUCH_LONGER * (seen.measured_until - self._whole.since)
+        if (longer or suspect.size > seen.measured_size) and self._measure(self._piece(suspect, time), time):
+            seen.measured_size, seen.measured_until = suspect.size, time
+        if seen.measured is not None and seen.measured.clear:
             return None
         damped = self._damped(now)
         took = f"takes {100.0 * suspect.share:.3g} % of the energy of these vibrations" + (
             " in place of damping" if damped else ""
         )
-        measured = "what that does could not be measured" if seen.probed is None else seen.probed.said()
         advice = TIGHTER
         if not damped:
             advice = "give the contacts the damping that they have (effects.damping), or try smaller tolerances"
         where = f"near {suspect.span.since:.6g} s rollers vibrate on their raceways"
-        return f"{where}, and the integration {took}: {measured}; {advice}"
+        return f"{where}, and the integration {took}: {self._said('what that does')}; {advice}"
 
     def small_losses(self, now: dict[str, float], time: float) -> str | None:
         """Measure losses that are smaller than what the tolerances leave open in the kinetic energy of rollers that turn fast; in
-        words, if they are not right.
+        words, if they are not known to be right.
         """
         seen, whole = self._seen, self._whole
         _, _, lost = missing(whole.first, now)
         kinetic = abs(now["kinetic_energy"])
         least = max(LEAST_STORED_SHARE * kinetic, LEAST_ENERGY)
-        most = min(STEPS, STEPS_IN_ALL - seen.probe_steps)
         if not least < lost < LEFT_OPEN * self._sim.options.tolerances.rtol * kinetic or whole.state is None:
             return None
-        if time - whole.since < SHORTEST or most < LEAST_STEPS:
-            return None
         length = min(time - whole.since, LENGTH)
-        found = probe(self._sim, self._bearing, whole.since, whole.state, most, length, GROWTH)
-        seen.probe_steps += most if found is None else found.steps
-        if found is not None and not found.notable(certain=False):
+        if length < SHORTEST or not self._measure(self._stretch(whole.since, whole.state, length, GROWTH), time):
             return None
-        measured = "how right they are could not be measured" if found is None else found.said()
+        if seen.measured is not None and seen.measured.clear:
+            return None
         return (
             f"from {whole.since:.6g} s to {time:.6g} s the bearing lost {lost:.2g} J, less than the tolerances leave open beside "
-            f"a kinetic energy of {kinetic:.2g} J: {measured}; {TIGHTER}"
+            f"a kinetic energy of {kinetic:.2g} J: {self._said('how right they are')}; {TIGHTER}"
         )
+
+    def _said(self, what: str) -> str:
+        return self._seen.measured.said() if self._seen.measured is not None else f"{what} could not be measured"
 
     def _suspect(self, span: Span, now: dict[str, float], time: float) -> None:
         """Keep the span in which the integration takes most from vibrations."""
@@ -172,24 +161,40 @@ class Vibrations:
         if matters and time - span.since >= SHORTEST and (seen.suspect is None or size > seen.suspect.size):
             seen.suspect = Suspect(share, size, span, time, seen.jump)
 
-    def _probe(self, suspect: Suspect, length: float, most: int) -> bool:
-        """Repeat a piece with tighter tolerances, if there are steps left for it; what was measured before stays if it fails."""
+    def _measure(self, piece: Stretch | None, time: float) -> bool:
+        """Measure what the tolerances do up to a time (s): by a piece, and where that does not show loss and load to be right, by
+        pairs of all since the simulation began, or of a stretch of it. False if there are no steps left for it; what was measured
+        before then stays.
+        """
         seen, own = self._seen, int(STEPS_SHARE * self._sim.statistics["steps"])
-        most = min(max(most, own), max(STEPS_IN_ALL, own) - seen.probe_steps)
-        place = self._piece(suspect, length, most)
-        if most < LEAST_STEPS or place is None:
+        left = max(STEPS_OF_SIMULATION, own) - seen.steps
+        if piece is None or left < LEAST_STEPS:
             return False
-        since, state, length, growth = place
-        before = seen.probed
-        if before is not None and before.since == since and before.until >= since + (1.0 - 1e-9) * length:
-            return False
-        found = probe(self._sim, self._bearing, since, state, most, length, growth)
-        seen.probe_steps += most if found is None else found.steps
-        seen.probed = found or seen.probed
+        most = min(max(STEPS, own), left)
+        seen.measured = first = piece.in_parts(most)
+        seen.steps += most if first is None else first.steps
+        if first is None or not first.clear:
+            dear = (most if first is None else max(first.steps, 1)) / piece.length
+            in_all = min(max(STEPS_IN_ALL, own), left)
+            seen.measured = found = self._longer(piece, time, dear, in_all).in_pairs(in_all)
+            seen.steps += in_all if found is None else found.steps
         return True
 
-    def _piece(self, suspect: Suspect, length: float, most: int) -> tuple[float, Array, float, float] | None:
-        """Where a probe begins (s), the state there, its length and what is left to vibrations to grow (s).
+    def _longer(self, piece: Stretch, time: float, dear: float, in_all: int) -> Stretch:
+        """What is repeated in pairs: the whole simulation up to a time (s), if a pair takes so few steps, with `dear` of them in
+        a second of the bearing; or what follows the beginning of a piece, as long as that.
+        """
+        whole = self._whole
+        length = min(STEPS_OF_A_PAIR, in_all) / dear
+        if whole.state is not None and time - whole.since <= length:
+            return self._stretch(whole.since, whole.state, time - whole.since, 0.0)
+        return replace(piece, length=max(piece.length, min(time - piece.begin, length)))
+
+    def _stretch(self, begin: float, state: Array, length: float, growth: float) -> Stretch:
+        return Stretch(self._sim, self._bearing, begin, state, length, growth)
+
+    def _piece(self, suspect: Suspect, time: float) -> Stretch | None:
+        """The piece that is repeated first, of a simulation that has come to a time (s).
 
         A jump of a load or speed excites vibrations at once: the piece begins there, where the run has not lost them yet. What
         follows the jump is compared up to the next one, as other loads have other losses.
@@ -197,19 +202,20 @@ class Vibrations:
         span = suspect.span
         if span.state is None:
             return None
-        usual = span.since, span.state, length, GROWTH
+        ordinary = self._stretch(span.since, span.state, min(LENGTH, max(time - span.since, SHORTEST)), GROWTH)
         ends = np.concatenate([[-math.inf], self._jumps, [math.inf]])
         common = np.minimum(ends[1:], suspect.until) - np.maximum(ends[:-1], span.since)
         first, last = ends[(place := int(np.argmax(common))) : place + 2]
         begin = span if first >= span.since else suspect.jump
         rest = last - span.since
         if common[place] < SHORTEST:
-            return usual
+            return ordinary
         if begin is None or begin.state is None or begin.since > first or span.since - first > LENGTH:
-            return (*usual[:2], min(length, rest), usual[3]) if rest > 2.0 * SHORTEST else usual
-        state = reached(self._sim, begin.since, begin.state, float(first), most)
+            return replace(ordinary, length=min(ordinary.length, rest)) if rest > 2.0 * SHORTEST else ordinary
+        state = self._stretch(begin.since, begin.state, float(first) - begin.since, 0.0).state_at_end(STEPS)
         growth = float(self._jumped[place - 1] - first)
-        return usual if state is None else (float(first), state, min(length, last - first), growth)
+        length = float(min(LENGTH, last - first, max(time - first, SHORTEST)))
+        return ordinary if state is None else self._stretch(float(first), state, length, growth)
 
     def _damped(self, now: dict[str, float]) -> bool:
         """Whether contacts have damped anything since the simulation began."""

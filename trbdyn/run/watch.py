@@ -18,7 +18,7 @@ import numpy as np
 from trbdyn.errors import RunWarning
 from trbdyn.model.motion import value_at
 from trbdyn.run.energies import LEAST_ENERGY, LEAST_STORED_SHARE, Span, missing, scale
-from trbdyn.run.probe import SHORTEST
+from trbdyn.run.stretch import SHORTEST
 from trbdyn.run.vibrations import TIGHTER, Seen, Vibrations
 
 if TYPE_CHECKING:
