@@ -55,6 +55,8 @@ PACKAGES := 'import sysconfig; print(sysconfig.get_path("platlib"))'
 DEFINES := -C cmake.define.TRB_WERROR=$(WERROR) -C cmake.define.TRB_BUILD_TESTS=ON
 
 export MPLBACKEND := Agg
+# tests and pages start hundreds of processes: without bytecode each compiles the package again, 0.8 s
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: core count walk cross demo site docs figures wheels test lint format bench stability notebooks fuzz sanitize mutate adversary install clean distclean
 .NOTPARALLEL:

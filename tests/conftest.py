@@ -5,6 +5,8 @@ Worker processes of studies take seconds to start: their tasks are done in this 
 Where rollers vibrate, a run is repeated with tighter tolerances, which takes much longer than a short run: in tests that ask for
 `probes` alone.
 
+Bytecode is kept, whatever the environment says: tests start some hundred processes, each of which would compile the package.
+
 Linear algebra takes one thread: several processes with two threads each wait for each other most of the time.
 
 Tests of Ctrl-C send signals: a shell that starts tests in the background lets them ignore it; Python then installs no handler.
@@ -17,6 +19,7 @@ import importlib.util
 import os
 import pickle
 import signal
+import sys
 from collections.abc import Callable
 from typing import Any, Final
 
@@ -46,6 +49,8 @@ LONGEST: Final = (
 
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # read when NumPy is imported, after this
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
