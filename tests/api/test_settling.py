@@ -115,16 +115,16 @@ def test_rollers_without_a_cage_are_judged_by_their_spacing() -> None:
 
 def test_a_radius_that_only_scatters_does_not_grow() -> None:
     """A radius that jumps between hardly anything and half of the play: its logarithm ends higher by chance."""
-    from trbdyn.results.observables.slow_motion import _moving
+    from trbdyn.results.observables.slow_motion import moving
 
     when = np.linspace(0.0, 4.0, 40)
     grown = 0
     for seed in range(40):
         size = np.exp(np.random.default_rng(seed).normal(-3.0, 1.0, 40))
-        grown += bool(_moving(when, {"whirl amplitude": size}, {}, 10.0))
+        grown += bool(moving(when, {"whirl amplitude": size}, {}, 10.0))
     assert grown <= 3
-    assert _moving(when, {"whirl amplitude": np.exp(0.5 * when - 3.0)}, {}, 10.0)
-    assert not _moving(when, {"whirl amplitude": np.exp(0.02 * when - 3.0)}, {}, 10.0)  # by less than a tenth
+    assert moving(when, {"whirl amplitude": np.exp(0.5 * when - 3.0)}, {}, 10.0)
+    assert not moving(when, {"whirl amplitude": np.exp(0.02 * when - 3.0)}, {}, 10.0)  # by less than a tenth
 
 
 def test_drift_needs_turns() -> None:
@@ -304,10 +304,11 @@ def test_a_forecast_holds_the_end(end: float) -> None:
     assert grows.high == grows.time_high == math.inf
 
 
-def whirling(values: Any, turns: int = 120) -> tuple[np.ndarray, np.ndarray]:
-    """Orbit by turns of the cage, with a scatter of 0.003 Cpr."""
+def whirling(values: Any, turns: int = 120, spacing: Any = None) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Orbit by turns of the cage, with a scatter of 0.003 Cpr; and the spacing of the rollers."""
     t = np.arange(turns) * 0.05
-    return t, np.asarray(values(t)) + 0.003 * np.random.default_rng(turns).normal(size=turns)
+    means = {"orbit radius": np.asarray(values(t)) + 0.003 * np.random.default_rng(turns).normal(size=turns)}
+    return t, means if spacing is None else means | {"roller spacing": np.asarray(spacing(t))}
 
 
 def test_starts_side_by_side() -> None:
@@ -396,15 +397,76 @@ def test_starts_of_one_class_whose_orbits_differ_are_alike() -> None:
     assert obs.compare_starts((one, far), window=20, creep_turns=30.0, kinds=both).verdict == "unknown"
 
 
+def test_what_goes_on_does_not_agree() -> None:
+    """Orbits that pass each other, and a spacing that grows, by which a whirl grows later: as long as either matters within three
+    creep times the motion may go on; a slow drift of a large spacing does not matter (runs of a 32310, a 33217 and a 30206).
+    """
+    both = ["circling", "circling"]
+
+    def told(outer: Any, creep_turns: float) -> str:
+        return obs.compare_starts(outer, window=20, creep_turns=creep_turns, kinds=both).verdict
+
+    passing = whirling(lambda t: 0.44 + 0.01 * t), whirling(lambda t: 0.52 - 0.01 * t)
+    assert told(passing, 40.0) == "so far"
+    still = whirling(lambda t: 0.44 + 0 * t, spacing=lambda t: 0.47 + 0 * t)
+    grows = whirling(lambda t: 0.44 + 0 * t, spacing=lambda t: 0.5 + 0.04 * t)
+    assert told((still, still), 80.0) == "agreed"
+    assert told((grows, still), 80.0) == "so far"
+    reason = obs.compare_starts((grows, still), window=20, creep_turns=80.0, kinds=both).reason
+    assert "from rest the roller spacing increases" in reason
+    assert told((whirling(lambda t: 0.44 + 0 * t, spacing=lambda t: 2.0 + 0.02 * t), still), 80.0) == "agreed"
+
+
+@pytest.mark.parametrize(
+    ("way", "to", "arrives"),
+    [
+        (lambda t: np.where(t < 3.0, 0.3 + 0.005 * t, 0.315 + 0.06 * (t - 3.0)), 0.9, 3.0 + (0.85 - 0.315) / 0.06),
+        (lambda t: 0.3 * np.exp(0.1 * t), 0.9, 10.0 * math.log(0.85 / 0.3)),
+        (lambda t: 0.1 + 0.25 * np.exp(-0.1 * t), 0.1, 10.0 * math.log(0.25 / 0.05)),
+        (lambda t: 0.4 - 0.03 * t, 0.1, (0.4 - 0.15) / 0.03),
+    ],
+    ids=["constant after a slow beginning", "exponential growth", "exponential decay", "constant"],
+)
+def test_a_direction_tells_when_it_comes_there(way: Any, to: float, arrives: float) -> None:
+    """By the latest rate and its change, whatever the beginning was: not by the mean rate of the run."""
+    rest, high = whirling(lambda t: 0.1 + 0 * t), whirling(lambda t: 0.9 + 0 * t)
+    found = obs.compare_starts((rest, high), whirling(way), window=20, creep_turns=9000.0)
+    assert (found.verdict, found.movers) == ("grows" if to > 0.5 else "dies", (2,))
+    assert found.orbit == pytest.approx(to, abs=0.01)
+    assert found.time_low < arrives - 6.0 < found.time_high
+    assert found.time_high < 10.0 * found.time_low
+
+
+def test_a_direction_that_slows_down_has_no_longest_time() -> None:
+    rest, high = whirling(lambda t: 0.1 + 0 * t), whirling(lambda t: 0.9 + 0 * t)
+    slows = obs.compare_starts((rest, high), whirling(lambda t: 0.6 - 0.3 * np.exp(-0.5 * t)), window=20)
+    assert slows.verdict == "grows"
+    assert slows.time_high == math.inf
+
+
+def test_a_class_near_its_bound_names_its_neighbour() -> None:
+    """A cage that rocks beside the axis by 0.6 of its distance; with an orbit larger by a third it comes over the middle."""
+    t = np.linspace(0.0, 2.0 * np.pi, 400, endpoint=False)
+    place, speed = 0.4 + 0.24 * np.exp(1j * t), 0.24j * np.exp(1j * t)
+    motion = obs.classify(*(np.column_stack([z.real, z.imag]) for z in (place, speed)), 1.0)
+    assert motion.kind == motion.kind_at(motion.orbit_over_play) == "rocking"
+    for orbit in (0.05, 0.28, 0.32, 0.38, 0.6, 2.0):
+        larger = 0.4 + orbit * np.exp(1j * t), orbit * 1j * np.exp(1j * t)
+        assert motion.kind_at(orbit) == obs.classify(*(np.column_stack([z.real, z.imag]) for z in larger), 1.0).kind
+    assert [motion.kind_at(orbit) for orbit in (0.05, 0.32)] == ["stable", "circling"]
+
+
 def test_starts_that_scatter_agree_over_a_longer_part() -> None:
     """Scatter of 0.08 Cpr: a window of 20 turns tells no mean, half of 240 mostly does, and then holds it."""
     t, agreed = np.arange(240) * 0.05, 0
     for seed in range(12):
         rng = np.random.default_rng(seed)
-        one, other = ((t, 0.6 + slow(rng, 240, 1, 0.08)) for _ in range(2))
-        short = (one[0][:40], one[1][:40]), (other[0][:40], other[1][:40])
+        one, other = (0.6 + slow(rng, 240, 1, 0.08) for _ in range(2))
+        short, whole = (
+            ((t[:end], {"orbit radius": one[:end]}), (t[:end], {"orbit radius": other[:end]})) for end in (40, 240)
+        )
         assert obs.compare_starts(short, window=20).verdict == "unknown"
-        found = obs.compare_starts((one, other), window=20)
+        found = obs.compare_starts(whole, window=20)
         agreed += found.verdict == "agreed"
         assert found.verdict != "agreed" or found.orbit == pytest.approx(0.6, abs=found.error)
     assert agreed >= 9

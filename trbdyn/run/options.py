@@ -11,7 +11,8 @@ from trbdyn.errors import InputError
 from trbdyn.model.core_table import SETTINGS, setting
 from trbdyn.model.motion import MAX_TIME
 from trbdyn.model.shaft import time_to_turn
-from trbdyn.results.observables.slow_motion import COMPARED, LIMITS
+from trbdyn.results.observables.slow_motion import LIMITS
+from trbdyn.results.observables.starts import COMPARED
 from trbdyn.run.until import CAGE
 
 if TYPE_CHECKING:

@@ -28,7 +28,7 @@ from trbdyn.model.roller import Scatter
 from trbdyn.model.scene import Scene
 from trbdyn.model.start import Start
 from trbdyn.results import observables
-from trbdyn.results.observables.slow_motion import SLOW
+from trbdyn.results.observables.starts import SLOW
 from trbdyn.results.result import Result
 from trbdyn.run.options import RunOptions
 from trbdyn.run.simulation import Simulation
@@ -56,12 +56,16 @@ ENOUGH: Final = 4
 """Windows after which starts that do not agree need no longer runs: two motions, or a direction whose end lies beyond the
 processor time.
 """
+STEADY: Final = 6.0
+"""Longest over shortest time that is left, up to which a direction needs no longer runs: 4 for a rate that does not change."""
 SCATTER: Final = (0.0, 0.2e-6, 1e-6)
 """Ranges of the rollers' diameters that are tried unless told otherwise (m): none; those of the finest rollers; those of ordinary
 ones (ISO 12297, variation within a lot: 0.5 um of grade 0.5, 1 um of grade 1).
 """
 TOLD: Final = ("agreed", "alike", "grows", "dies")
 """Verdicts that tell one motion."""
+ONE_CLASS: Final = ("agreed", "alike", "so far")
+"""Verdicts that tell the class of all starts."""
 WHIRLS: Final = {
     "circling": "whirls",
     "rocking": "hangs and rocks",
@@ -83,10 +87,10 @@ class OfRollers:
     seed : int
         Seed of the diameters.
     found : Compared
-        What the starts tell: agreed, alike, grows, dies, meets, two motions, start decides or unknown.
+        What the starts tell: agreed, alike, so far, grows, dies, meets, two motions, start decides or unknown.
     kind : str
-        Class of the motion, as `observables.classify` names it: of all starts where they agree or are alike, of the one towards
-        which it moves where it grows or dies; else 'unknown'.
+        Class of the motion, as `observables.classify` names it: of all starts where they agree or are alike, also so far; of the
+        one towards which it moves where it grows or dies; else 'unknown'.
     hits : float
         Hits of rollers on the cage in a second (1/s), of that start; nan for an unknown motion.
     force : float
@@ -97,6 +101,9 @@ class OfRollers:
         Processor time of all runs (s).
     kinds : tuple of str
         Classes of the motion in the last window from rest and from a large whirl.
+    near : tuple of str
+        Agreed, alike, so far: classes of the starts that have come there, and those that their motions have with an orbit as
+        small or as large as the answer leaves possible (`CageMotion.kind_at`).
     """
 
     bearing: str
@@ -109,26 +116,32 @@ class OfRollers:
     turns: int
     processor_time: float
     kinds: tuple[str, str] = ("unknown", "unknown")
+    near: tuple[str, ...] = ()
 
     @property
     def words(self) -> str:
         """The verdict in words."""
         found, does = self.found, WHIRLS.get(self.kind, "")
+        if found.verdict in ONE_CLASS:
+            does = " or ".join(dict.fromkeys(WHIRLS.get(kind, "moves") for kind in (self.kind, *self.near)))
         if found.verdict == "agreed":
             of, moving = f"it {does}, orbit {found.orbit:.2f} Cpr within {found.error:.2f}", math.isfinite(found.rate)
             last = f"; the orbit of the last one still {_way(found.rate)} towards it" if moving else ""
             return f"{'two of three starts' if moving else 'all starts'} agree: {of}{last}"
-        if found.verdict == "alike":
+        if found.verdict in ("alike", "so far"):
             low, high = (end(*found.ends, found.orbit + way * found.error) for end, way in ((min, -1.0), (max, 1.0)))
             low = max(low, 0.0)
-            does = " or ".join(dict.fromkeys(WHIRLS.get(kind, "moves") for kind in self.kinds))
+            if found.verdict == "so far":
+                return (
+                    f"so far it {does} from all starts, orbit {low:.2f} to {high:.2f} Cpr; it may go on: {found.reason}"
+                )
             return f"it {does} from all starts; their orbits differ or wander: {low:.2f} to {high:.2f} Cpr"
         if found.verdict in ("grows", "dies"):
             way = f"the orbit {_way(found.rate)}"
-            when = f"expected there after {found.time_low:.2g} to {found.time_high:.2g} s more"
+            when = f"expected there {self._when('after')}"
             return f"{way} towards {found.orbit:.2f} Cpr, where it {does}; {when}"
         if found.verdict == "meets":
-            when = f"expected within {found.time_low:.2g} to {found.time_high:.2g} s more"
+            when = f"expected {self._when('within')}"
             return f"starts approach each other by {abs(found.rate):.2g} Cpr in a second near {found.orbit:.2f} Cpr; {when}"
         if found.verdict in ("two motions", "start decides"):
             both = "; ".join(
@@ -138,6 +151,13 @@ class OfRollers:
             long = f" for {found.time_low:.2g} s or longer" if found.verdict == "start decides" else ""
             return f"two motions are possible, the start decides{long}: {both}"
         return f"cannot be told: {found.reason}"
+
+    def _when(self, within: str) -> str:
+        """When a direction comes to its end."""
+        low, high = self.found.time_low, self.found.time_high
+        if math.isinf(high):
+            return f"after {low:.2g} s more at the earliest; it slows down and may end before"
+        return f"{within} {low:.2g} to {high:.2g} s more"
 
 
 def _way(rate: float) -> str:
@@ -229,8 +249,8 @@ def cage_answer(
     Runs from rest and from a large whirl go on side by side in threads, window by window of 20 turns of the cage (10 where these
     are costly), until both have come to the same motion. Where they have not, a third run from a whirl of 0.3 of the play shows
     the direction, with its rate: from the second window on where the rollers creep slowly, else from the fourth. A search ends
-    when the starts agree, or are of one class with orbits whose range is told; when a direction is told whose end lies beyond
-    the processor time; when the rollers creep so slowly that the start decides, and then both motions are told; or when the
+    when the starts agree; when a direction is told whose end lies beyond the processor time, by a rate that does not change;
+    when the rollers creep so slowly that the start decides, and then both motions are told; or when the
     processor time is spent.
 
     Parameters
@@ -323,7 +343,7 @@ class _Run:
     spent: float = 0.0
     turns: int = 0
     times: dict[str, list[Array]] = field(default_factory=dict)
-    orbits: dict[str, list[Array]] = field(default_factory=dict)
+    means: dict[str, list[dict[str, Array]]] = field(default_factory=dict)
     last: dict[str, Result] = field(default_factory=dict)
 
     def go_on(self, turns: int, groups: Sequence[str]) -> float:
@@ -337,15 +357,16 @@ class _Run:
         for name, part in parts.items():
             when, means = part.turn_means()
             self.times.setdefault(name, []).append(when)
-            self.orbits.setdefault(name, []).append(means[observables.COMPARED])
+            self.means.setdefault(name, []).append(means)
         self.last, self.turns = parts, self.turns + turns
         took = clock.thread_time() - began
         self.spent += took
         return took
 
-    def series(self, name: str) -> tuple[Array, Array]:
-        """Times and orbit radius by turns of the cage."""
-        return np.concatenate(self.times[name]), np.concatenate(self.orbits[name])
+    def series(self, name: str) -> tuple[Array, dict[str, Array]]:
+        """Times of the turns of the cage, and means over them."""
+        parts = self.means[name]
+        return np.concatenate(self.times[name]), {key: np.concatenate([one[key] for one in parts]) for key in parts[0]}
 
 
 @dataclass
@@ -405,8 +426,10 @@ class _Search:
             return True
         if found.verdict == "start decides":
             left = min(left, windows * self.window)
-        told = found.verdict in ("alike", "two motions") or found.time_low > left * self._turn
-        return windows >= ENOUGH and told
+        beyond = found.time_low > left * self._turn
+        if found.verdict in ("grows", "dies", "meets"):
+            beyond = beyond and found.time_high <= STEADY * found.time_low
+        return windows >= ENOUGH and (found.verdict == "two motions" or beyond)
 
     def _begun(self, start: str) -> _Run:
         subject = self.subject
@@ -422,13 +445,25 @@ class _Search:
         return observables.compare_starts(outer, between, window=self.window, creep_turns=self.creep[name], kinds=kinds)
 
     def _row(self, name: str, found: observables.Compared, runs: dict[str, _Run], spent: float) -> OfRollers:
-        ends = {start: float(runs[start].series(name)[1][-self.window :].mean()) for start in (REST, LARGE)}
+        orbits = {start: runs[start].series(name)[1][observables.COMPARED] for start in (REST, LARGE)}
+        ends = {start: float(values[-self.window :].mean()) for start, values in orbits.items()}
         like = min(ends, key=lambda start: abs(ends[start] - found.orbit))
         last = runs[like].last[name]
-        told = found.verdict in TOLD
+        told = found.verdict in (*TOLD, *ONE_CLASS)
         hits = float(last.rattle.per_second) if told else math.nan
         force = float(np.max(last.peaks["pocket_force_peak"])) if told else math.nan
         kind = last.cage_motion.kind if told else "unknown"
         turns = max(run.turns for run in runs.values())
         first, second = (runs[start].last[name].cage_motion.kind for start in (REST, LARGE))
-        return OfRollers(name, self.scatter, self.seed, found, kind, hits, force, turns, spent, (first, second))
+        near = self._near(name, found, like, runs)
+        return OfRollers(name, self.scatter, self.seed, found, kind, hits, force, turns, spent, (first, second), near)
+
+    def _near(self, name: str, found: observables.Compared, like: str, runs: dict[str, _Run]) -> tuple[str, ...]:
+        """Classes of starts that agree or are alike, with those that the range of their orbit leaves possible."""
+        if found.verdict not in ONE_CLASS:
+            return ()
+        there = (like, BETWEEN) if math.isfinite(found.rate) else (REST, LARGE)
+        motions = [runs[start].last[name].cage_motion for start in there]
+        orbits = [max(found.orbit + way * found.error, 0.0) for way in (0.0, -1.0, 1.0)]
+        kinds = [one.kind for one in motions] + [one.kind_at(orbit) for one in motions for orbit in orbits]
+        return tuple(dict.fromkeys(kinds))

@@ -30,19 +30,23 @@ if TYPE_CHECKING:
         by_turns as by_turns,
         drift as drift,
         forecast as forecast,
+        latest as latest,
         mean_unknown as mean_unknown,
         side_of as side_of,
+        time_left as time_left,
     )
     from trbdyn.results.observables.slow_motion import (
-        COMPARED as COMPARED,
         LIMITS as LIMITS,
-        Compared as Compared,
         MotionSettling as MotionSettling,
-        agree as agree,
-        compare_starts as compare_starts,
         motion_settling as motion_settling,
         turn_means as turn_means,
         whirl_amplitude as whirl_amplitude,
+    )
+    from trbdyn.results.observables.starts import (
+        COMPARED as COMPARED,
+        Compared as Compared,
+        agree as agree,
+        compare_starts as compare_starts,
     )
     from trbdyn.results.observables.energy import (
         EnergyAudit as EnergyAudit,

@@ -7,6 +7,7 @@ zero, and lies far from the axis. They agree for a cage that whirls around the a
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Final, Literal
 
@@ -296,6 +297,42 @@ class CageMotion:
     own_side: float
     axis_coherence: float
 
+    def kind_at(self, orbit_over_play: float) -> Kind:
+        """Class that the motion would have with another orbit of the same shape about the same mean place: near to a bound a
+        small change of the orbit is another class. By the bounds of `classify` as they are by default.
+
+        Parameters
+        ----------
+        orbit_over_play : float
+            Orbit over the radial play.
+
+        Returns
+        -------
+        {"unknown", "stable", "rocking", "circling", "unstable"}
+        """
+        if self.kind == "unknown" or self.orbit_over_play == 0.0:
+            return self.kind
+        # places along the mean place are 1 - (1 - side) f of it with f times the orbit, and moments about the axis go with f^2
+        f = orbit_over_play / self.orbit_over_play
+        whirl = self.whirl_coherence**2
+        moment = self.axis_coherence**2
+        ratio = (
+            whirl / moment - 1.0 if moment > 0.0 else math.inf
+        )  # square of the distance of the mean place over the orbit
+        axis = math.sqrt(whirl / (1.0 + max(ratio, 0.0) / f**2)) if f > 0.0 else 0.0
+        return _kind(orbit_over_play, 1.0 - f * (1.0 - self.own_side), axis)
+
+
+def _kind(
+    orbit: float, side: float, coherence: float, rest: float = REST_ORBIT, least: float = LEAST_COHERENCE
+) -> Kind:
+    """Class by orbit over the play, own side and coherence about the axis, with the bounds of orbit and coherence."""
+    if orbit < rest:
+        return "stable"
+    if side >= OWN_SIDE:
+        return "rocking"
+    return "circling" if abs(coherence) >= least else "unstable"
+
 
 def classify(
     position: ArrayLike,
@@ -349,10 +386,6 @@ def classify(
             angle = np.asarray(cage_angle, dtype=float)
             if abs(float(angle[-1] - angle[0])) < 2.0 * np.pi * LEAST_TURNS:
                 return "unknown"
-        if orbit < rest_orbit:
-            return "stable"
-        if side >= OWN_SIDE:
-            return "rocking"
-        return "circling" if abs(about_axis) >= least_coherence else "unstable"
+        return _kind(orbit, side, about_axis, rest_orbit, least_coherence)
 
     return CageMotion(kind(), orbit, coherence, ratio, side, about_axis)

@@ -28,7 +28,7 @@ MOST_ALIKE: Final = 0.9
 ONE_IN_20: Final = 0.05
 """Chance that the scatter of a longer record is larger than is taken."""
 FACTOR: Final = 2.0
-"""Factor within which an exponential approach tells the way and the time that are left; measured on runs that were followed."""
+"""Factor within which a forecast tells the way and the time that are left; measured on runs that were followed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -303,3 +303,86 @@ def forecast(time: ArrayLike, values: ArrayLike) -> Forecast:
     ends = sorted((end + left / FACTOR, end + left * FACTOR))
     wait = math.log(20.0) * scale
     return Forecast(ends[0], ends[1], wait / FACTOR, wait * FACTOR)
+
+
+def latest(time: ArrayLike, values: ArrayLike, part: int, least: float = 0.0) -> tuple[Drift, Drift, float]:
+    """Rate of a quantity in the latest part of a record in which it moves, and in the part before.
+
+    Parameters
+    ----------
+    time : array_like, shape (N,)
+        Times, s.
+    values : array_like, shape (N,)
+        Means over these times.
+    part : int
+        Number of values of the shortest part. It is doubled until the rate stands out of the scatter and the way in the part is
+        more than the least one, or half of the record is reached.
+    least : float
+        Least way, in the unit of the values.
+
+    Returns
+    -------
+    now, before : Drift
+        Of the latest part, and of one as long before it.
+    apart : float
+        Time between the beginnings of both parts, s.
+
+    Raises
+    ------
+    ValueError
+        If half of the record has fewer values than `LEAST_BLOCKS`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from trbdyn import observables
+    >>> t = np.linspace(0.0, 1.0, 81)
+    >>> now, before, apart = observables.latest(t, np.where(t < 0.5, t, 3.0 * t - 1.0), 40)
+    >>> round(now.rate, 1), round(before.rate, 1), round(apart, 1)
+    (3.0, 1.0, 0.5)
+    """
+    t, x = np.asarray(time, dtype=float), np.asarray(values, dtype=float)
+    most = t.size // 2
+    size = min(part, most)
+    while True:
+        now, apart = drift(t[-size:], x[-size:]), float(t[-size] - t[-2 * size])
+        if size == most or (now.significant and abs(now.rate) * apart > least):
+            return now, drift(t[-2 * size : -size], x[-2 * size : -size]), apart
+        size = min(2 * size, most)
+
+
+def time_left(way: float, now: Drift, before: Drift, apart: float) -> tuple[float, float]:
+    """Time that a way is expected to take, from its rate and the rate a while before.
+
+    A motion of slow rollers speeds up as their spacing grows, and slows down where it comes to rest. So the time lies between
+    that of a constant rate, and that of a rate which goes on changing by the same factor in the same time (`FACTOR` either way).
+
+    Parameters
+    ----------
+    way : float
+        Way that is left, in the direction of the rate now, in the unit of the quantity.
+    now, before : Drift
+        Rates, as `latest` gives them.
+    apart : float
+        Time between the two, s.
+
+    Returns
+    -------
+    tuple of float
+        Shortest and longest time, s; the longest is infinite where the rate becomes so much smaller that the way has no end.
+
+    Examples
+    --------
+    >>> from trbdyn import observables
+    >>> steady = observables.Drift(mean=0.5, rate=0.1, error=0.01, freedom=10)
+    >>> [round(one, 3) for one in observables.time_left(0.4, steady, steady, 1.0)]
+    [2.0, 8.0]
+    """
+    rate, first = abs(now.rate), before.rate * math.copysign(1.0, now.rate)
+    constant = way / rate
+    if first <= 0.0:  # it has only begun to move
+        return constant / FACTOR**2, constant * FACTOR
+    growth = math.log(rate / first) / apart
+    ahead = growth * constant
+    changing = constant if abs(ahead) < 1e-9 else math.log1p(ahead) / growth if ahead > -1.0 else math.inf
+    return min(constant, changing) / FACTOR, max(constant, changing) * FACTOR

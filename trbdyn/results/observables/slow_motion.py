@@ -9,14 +9,14 @@ told by the rates of change with their errors, and by the time that the creep ta
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trbdyn.results.observables.rates import FACTOR, LEAST_BLOCKS, Drift, by_turns, drift, forecast, mean_unknown
+from trbdyn.results.observables.rates import LEAST_BLOCKS, Drift, by_turns, drift, forecast
 from trbdyn.results.observables.signals import settling
 
 Array = NDArray[np.float64]
@@ -240,11 +240,11 @@ def motion_settling(
         )
     drifts = {name: drift(when, values) for name, values in means.items()}
     horizon = length if math.isnan(creep_time) else max(length, CREEP_TIMES * creep_time)
-    moving = _moving(when, means, drifts, horizon)
-    if moving:
-        name, scale, words = min(moving, key=lambda entry: entry[1])
-        growth = next((1.0 / one for _, one, how in moving if how == GROWS), 0.0)
-        left = 0.0 if growth else _left(when, means, {one[0] for one in moving}, horizon)
+    ways = moving(when, means, drifts, horizon)
+    if ways:
+        name, scale, words = min(ways, key=lambda entry: entry[1])
+        growth = next((1.0 / one for _, one, how in ways if how == GROWS), 0.0)
+        left = 0.0 if growth else _left(when, means, {one[0] for one in ways}, horizon)
         still = float(t[-1]) - first + min(left, CREEP_TIMES * scale)
         drifting = result("drifting", f"the {name} {words}, time scale {scale:.2g} s", scale, drifts, still)
         return replace(drifting, growth_rate=growth)
@@ -285,10 +285,10 @@ def _share(name: str, rate: float, length: float) -> float:
     return rate * length / (2.0 * LIMITS[name])
 
 
-def _moving(
+def moving(
     when: Array, means: dict[str, Array], drifts: dict[str, Drift], horizon: float
 ) -> list[tuple[str, float, str]]:
-    """The quantities that drift: name, time scale (s), words."""
+    """The quantities that drift by more than matters within a horizon (s): name, time scale (s), words."""
     found: list[tuple[str, float, str]] = []
     for name, rate in drifts.items():
         if rate.significant and abs(rate.rate) * horizon > LIMITS[name]:
@@ -306,264 +306,3 @@ def _moving(
 def _matters(size: float, rate: float, horizon: float) -> bool:
     """Whether growth at this rate goes beyond its limit within the horizon."""
     return bool(size * math.expm1(min(rate * horizon, 100.0)) > LIMITS["whirl amplitude"])
-
-
-COMPARED: Final = "orbit radius"
-"""Quantity by which starts are compared."""
-WANDERS: Final = 0.1
-"""Error of the mean orbit of a start, over Cpr, up to which starts of one class are told to be alike; and difference of their
-orbits from which on this takes runs of three creep times.
-"""
-ALIKE: Final = 0.25
-"""Difference of the orbits of starts of one class up to which they are told to be alike, and longest way that none of the starts
-has gone where the third only moves towards the motion of the others; in units of Cpr.
-"""
-MOVED: Final = 0.02
-"""Way of a start within what is judged from which on a direction is told, in units of Cpr."""
-SLOW: Final = 250.0
-"""Turns of the cage within which the rollers creep from which on starts are not expected to agree: the start decides."""
-NO_WHIRL: Final = frozenset({"stable", "rocking"})
-"""Classes of a cage that does not circle: a cage that hangs still and one that rocks by as much as the limit are one motion."""
-
-
-@dataclass(frozen=True, slots=True)
-class Compared:
-    """What runs from several starts, side by side, tell of the motion in the long run.
-
-    Attributes
-    ----------
-    verdict : {"agreed", "alike", "grows", "dies", "meets", "two motions", "start decides", "unknown"}
-        Agreed: all starts have come to the same motion, or the one between and another have, and the third moves towards it and
-        is near to where the one between began. Alike: their motion is of one class, but their orbits differ by more, or wander.
-        Grows, dies: they have not, and the start between the two others moves towards the larger or the smaller one, or it is
-        there already and the other follows. Meets: a larger one moves down and a smaller one up. Two motions: the outer ones have
-        settled apart, and the start between them has gone to one of them; or a smaller one moves down and a larger one up. Start
-        decides: the rollers creep within more than `SLOW` turns, and each start keeps its own motion for a time that is told.
-        Unknown: none of these.
-    orbit : float
-        Agreed, alike: the orbit of the cage, mean of the starts. Grows, dies: that of the start towards which it moves. Meets:
-        between these two. Over Cpr.
-    error : float
-        Largest difference of a start from it, or half of the way that is left (Cpr).
-    rate : float
-        Rate of the start that shows the direction, Cpr in a second (meets: of the distance; agreed: of the start that has not
-        come there yet); nan where there is none.
-    rate_error : float
-        Its standard error.
-    time_low, time_high : float
-        Grows, dies, meets: how much longer the way is expected to take, s. Start decides: `time_low` is the time within which no
-        start is expected to move by more than the limit of an orbit, or has not moved by it.
-    reason : str
-        Unknown: why.
-    ends : tuple of float
-        Orbits of the outer starts in their last window, from rest and from a large whirl, over Cpr.
-    open : tuple of int
-        Starts whose longer runs may tell more: 0 from rest, 1 from a large whirl, 2 the one between. Where a direction is told,
-        one that stands and one that follows behind are not among them.
-    """
-
-    verdict: Literal["agreed", "alike", "grows", "dies", "meets", "two motions", "start decides", "unknown"]
-    orbit: float
-    error: float
-    rate: float = math.nan
-    rate_error: float = math.nan
-    time_low: float = math.nan
-    time_high: float = math.nan
-    reason: str = ""
-    ends: tuple[float, float] = (math.nan, math.nan)
-    open: tuple[int, ...] = (0, 1, 2)
-
-
-def _alike(kinds: Collection[str]) -> bool:
-    """Whether classes are one, or only such that do not circle."""
-    return "unknown" not in kinds and (len(set(kinds)) <= 1 or set(kinds) <= NO_WHIRL)
-
-
-def _similar(kinds: Collection[str]) -> bool:
-    """The same, where some runs move without order, so that their class may be another in the next window."""
-    return _alike([kind for kind in kinds if kind != "unstable"])
-
-
-def agree(orbits: Collection[float], unknown: Collection[float], kinds: Collection[str]) -> bool:
-    """Whether runs from several starts have come to one motion.
-
-    Parameters
-    ----------
-    orbits : collection of float
-        Mean orbit radius at the end of each, over Cpr.
-    unknown : collection of float
-        How far each mean may be off (`mean_unknown`), over Cpr.
-    kinds : collection of str
-        Classes of their motion: one class, or only such that do not circle.
-
-    Returns
-    -------
-    bool
-        All orbits lie within the limit of an orbit, and each is known within it.
-
-    Examples
-    --------
-    >>> from trbdyn import observables
-    >>> observables.agree([0.10, 0.12], [0.01, 0.02], ["stable", "rocking"])
-    True
-    """
-    limit = LIMITS[COMPARED]
-    return (
-        _alike(kinds) and max(orbits) - min(orbits) <= limit and all(one <= limit for one in unknown)
-    )  # nan is not known
-
-
-def compare_starts(
-    outer: tuple[tuple[Array, Array], tuple[Array, Array]],
-    between: tuple[Array, Array] | None = None,
-    *,
-    window: int,
-    creep_turns: float = math.nan,
-    kinds: Sequence[str] = (),
-) -> Compared:
-    """What runs from a quiet start, from a large whirl and, where these do not agree, from one between tell.
-
-    Parameters
-    ----------
-    outer : pair of pairs of arrays
-        Times (s) and orbit radius over Cpr by turns of the cage: of the run from rest and of the one from a large whirl.
-    between : pair of arrays, optional
-        The same of the start between. Runs may differ in length.
-    window : int
-        Turns of the cage in a window. The last window of each run is compared, or, where this scatters too much, the last half.
-        The first window is a transient, from which no rate is taken.
-    creep_turns : float
-        Time of the rollers' creep in turns of the cage; nan where it is not known.
-    kinds : sequence of str, optional
-        Classes of the motion in the last window of the outer runs, and of the one between: only those of one class agree, or that
-        both do not circle.
-
-    Returns
-    -------
-    Compared
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from trbdyn import observables
-    >>> turns = np.arange(60.0)
-    >>> found = observables.compare_starts(((turns, 0 * turns + 0.1), (turns, 0.1 + 0.8 * np.exp(-turns / 5))), window=20)
-    >>> found.verdict, round(found.orbit, 2)
-    ('agreed', 0.1)
-    """
-    limit, size = LIMITS[COMPARED], min(values.size for _, values in outer)
-    series, of_outer = [*outer, *([] if between is None else [between])], kinds[:2]
-    ends = (float(outer[0][1][-window:].mean()), float(outer[1][1][-window:].mean()))
-    middle, apart = 0.5 * sum(ends), abs(ends[1] - ends[0])
-    alike: Compared | None = None
-    unknown = [math.inf, math.inf]
-    for length in dict.fromkeys((window, max(window, size // 2))):
-        means = [float(values[-length:].mean()) for _, values in outer]
-        unknown = [mean_unknown(when[-length:], values[-length:]) for when, values in outer]
-        error = 0.5 * abs(means[1] - means[0]) + max(unknown)
-        if agree(means, unknown, of_outer):
-            return Compared("agreed", 0.5 * sum(means), error, ends=(means[0], means[1]))
-        differ = abs(means[1] - means[0])
-        long_enough = size >= max(2 * window, CREEP_TIMES * np.nan_to_num(creep_turns) if differ > WANDERS else 0.0)
-        if differ <= ALIKE and all(one <= WANDERS for one in unknown) and long_enough and of_outer and _similar(kinds):
-            alike = Compared("alike", 0.5 * sum(means), error, ends=(means[0], means[1]))
-    if alike is not None:
-        return alike
-    creeps = "" if math.isnan(creep_turns) else f"; the rollers creep within {creep_turns:.3g} turns of the cage"
-    classes = "" if len(set(of_outer)) <= 1 else f"; one of them is {', the other '.join(sorted(set(of_outer)))}"
-    said = f"from rest the orbit is {ends[0]:.2f} Cpr, from a large whirl {ends[1]:.2f} Cpr{classes}"
-    if between is None or between[1].size < 2 * window or size < 2 * window:
-        if size >= 2 * window and (keeps := _keeps(outer, window)) and creep_turns > SLOW and apart > limit:
-            return Compared("start decides", middle, 0.5 * apart, time_low=keeps, ends=ends)
-        return Compared("unknown", middle, 0.5 * apart, reason=f"{said}{creeps}", ends=ends)
-    rates = [drift(when[window:], values[window:]) for when, values in series]
-    moves = [_moves(when[window:], values[window:]) for when, values in series]
-    now = float(between[1][-window:].mean())
-    places = (*ends, now)
-    near_end = min(ends, key=lambda end: abs(now - end))
-    gone = abs(now - near_end) <= limit < apart
-    for k, last in ((0, 1), (1, 0)):
-        known = [mean_unknown(series[one][0][-window:], series[one][1][-window:]) for one in (k, 2)]
-        classes_of = [kinds[one] for one in (k, 2)] if len(kinds) == len(series) else []
-        stand = not any(_moves(*(part[-window:] for part in series[one])) for one in (k, 2))
-        if (
-            stand
-            and agree([places[k], now], known, classes_of)
-            and _comes(series[last], between, window, moves[last], places[k])
-        ):
-            orbit, rate = 0.5 * (places[k] + now), rates[last]
-            return Compared("agreed", orbit, 0.5 * abs(places[k] - now) + max(known), rate.rate, rate.error, ends=ends)
-    if gone and moves[0] == moves[1] == 0.0 and size >= CREEP_TIMES * creep_turns and apart > limit + sum(unknown):
-        return Compared("two motions", near_end, 0.5 * apart, rates[2].rate, rates[2].error, ends=ends)
-
-    def towards(
-        verdict: Literal["grows", "dies", "meets"],
-        to: float,
-        way: float,
-        rate: float,
-        error: float,
-        goes_on: Collection[int] = (0, 1, 2),
-    ) -> Compared:
-        # between a constant rate and an exponential approach that ends within the limit
-        left = max(way, limit) / abs(rate) * math.sqrt(max(math.log(max(way, limit) / limit), 1.0))
-        goes = tuple(k for k in goes_on if moves[k] or k == 2 or unknown[k] > limit)
-        return Compared(verdict, to, 0.5 * way, rate, error, left / FACTOR, left * FACTOR, ends=ends, open=goes)
-
-    ups, downs = ([k for k in range(3) if moves[k] == way] for way in (1.0, -1.0))
-    if ups and downs:
-        low, high = max(ups, key=lambda k: places[k]), min(downs, key=lambda k: places[k])
-        one, other, way = rates[low], rates[high], places[high] - places[low]
-        if way > 0.0:
-            error = math.hypot(one.error, other.error)
-            pair = (low, high) if 2 in (low, high) else (0, 1)
-            return towards("meets", 0.5 * (places[low] + places[high]), way, other.rate - one.rate, error, pair)
-        first = [float(values[window : 2 * window].mean()) for _, values in series]
-        if max(first[k] for k in downs) < min(first[k] for k in ups):
-            # what was smaller shrinks and what was larger grows: a motion that nothing keeps lies between
-            return Compared("two motions", near_end, 0.5 * apart, rates[2].rate, rates[2].error, ends=ends)
-    if (ups or downs) and not (ups and downs):
-        to = max(places) if ups else min(places)
-        # one that moves alone tells a direction only where the start between moves, too, or has gone to the other side
-        if moves[2]:
-            end = 1 if ups else 0
-            goes_on = (end, 2) if places[end] == to else (0, 1, 2)
-            return towards("grows" if ups else "dies", to, abs(to - now), rates[2].rate, rates[2].error, goes_on)
-        if gone and (alone := [k for k in (0, 1) if moves[k] and abs(places[k] - now) > limit]):
-            one, place = rates[alone[0]], places[alone[0]]
-            return towards("grows" if ups else "dies", to, abs(to - place), one.rate, one.error, alone)
-    if creep_turns > SLOW and apart > limit and (keeps := _keeps(series, window)):
-        return Compared("start decides", middle, 0.5 * apart, time_low=keeps, ends=ends)
-    how = f"a start between them moves by {rates[2].rate:+.2g} with an error of {rates[2].error:.1g} Cpr in a second"
-    reason = f"{said}, and {how}{creeps}"
-    return Compared("unknown", middle, 0.5 * apart, rates[2].rate, rates[2].error, reason=reason, ends=ends)
-
-
-def _moves(when: Array, values: Array) -> float:
-    """Whether a start moves: 1 up, -1 down, 0 not."""
-    rate = drift(when, values)
-    return math.copysign(1.0, rate.rate) if rate.significant and abs(rate.rate) * float(np.ptp(when)) > MOVED else 0.0
-
-
-def _keeps(series: Sequence[tuple[Array, Array]], window: int) -> float:
-    """Time (s) within which no start is expected to move by more than the limit of an orbit: as long as their rates let it be, or
-    that of their runs after the first window where none has moved by it; else 0.
-    """
-    limit, rest = LIMITS[COMPARED], [(when[window:], values[window:]) for when, values in series]
-    spans = [float(np.ptp(when)) for when, _ in rest]
-    rated = limit / max(max(drift(*one).bound for one in rest), 1e-300)
-    if rated > max(spans):
-        return rated
-    kept = all(abs(float(values[-window:].mean() - values[:window].mean())) <= limit for _, values in rest)
-    return min(spans) if kept else 0.0
-
-
-def _comes(series: tuple[Array, Array], between: tuple[Array, Array], window: int, way: float, to: float) -> bool:
-    """Whether a start moves (1 up, -1 down, 0 not) to a place over Cpr, does not slow down before it by its `forecast`, and has
-    come near to where another one began that has gone there.
-    """
-    when, values = series[0][window:], series[1][window:]
-    now, began = float(values[-window:].mean()), float(between[1][:LEAST_BLOCKS].mean())
-    if way * (to - now) <= 0.0 or way * (began - now) > ALIKE or values.size < 2 * LEAST_BLOCKS:
-        return False
-    ends = forecast(when, values)
-    return ends.high >= to - LIMITS[COMPARED] if way > 0.0 else ends.low <= to + LIMITS[COMPARED]
