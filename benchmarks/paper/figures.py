@@ -83,7 +83,7 @@ def panels(
                 if not run.settled:
                     _mark(ax, "not settled")
             if row == 0:
-                ax.set_title(conditions[column].title, fontsize=9)
+                ax.set_title(conditions[column].title.replace(", scatter", ",\nscatter"), fontsize=9)
             if row < len(starts) - 1:
                 ax.set_xlabel("")
         words = next((ax.get_ylabel() for ax in axes.flat if ax.get_ylabel()), "")
