@@ -227,7 +227,7 @@ def test_what_the_steps_take_from_vibrations_is_seen_and_measured():
     """With 'fast' the load is too low, by tight runs by 6.5 % from 10 to 30 ms, and by half of it in all, as vibrations grow for
     10 ms: the steps take what should vibrate, and little is left to see."""
     with pytest.warns(trb.RunWarning, match="in place of damping"):
-        result = trb.Simulation(hardly_loaded(), accuracy="fast", integrator="bdf").run(duration=0.03, save_every=1e-3)
+        result = trb.Simulation(hardly_loaded(), accuracy="fast").run(duration=0.03, save_every=1e-3)
     (text,) = result.warnings
     low = re.search(r"the load of a roller is (\S+) to (\S+) % too low", text)
     assert low is not None, text
@@ -272,6 +272,20 @@ def test_rollers_that_bounce_without_damping_are_said():
         result = trb.Simulation(loose_scene()).run(duration=0.012)
     assert result.success
     assert any("effects.damping" in text for text in result.warnings)
+
+
+@pytest.mark.usefixtures("probes")
+def test_of_a_run_that_takes_too_many_steps_a_stretch_is_repeated(monkeypatch):
+    """Twice at least, though the first pair takes all the steps that there are."""
+    for name, steps in {"STEPS_OF_WHOLE": 1, "STEPS_OF_STRETCH": 1500, "STEPS_IN_ALL": 2500}.items():
+        monkeypatch.setattr(f"trbdyn.run.vibrations.{name}", steps)
+    with pytest.warns(trb.RunWarning, match="vibrate on their raceways"):
+        result = trb.Simulation(loose_scene()).run(duration=0.012)
+    (text,) = (text for text in result.warnings if "vibrate" in text)
+    said = re.search(r"([\d.]+) ms from (\S+) s on were repeated (\d) times", text)
+    assert said is not None, text
+    assert float(said[1]) < 8.0
+    assert float(said[2]) > 0.0
 
 
 def test_the_damping_that_the_warning_names_makes_presets_agree():

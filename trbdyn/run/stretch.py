@@ -103,7 +103,9 @@ class Stretch:
         sample = Sample(Piece(0, self.begin, float(self._times[self._first]), self.begin + self.length))
         steps, found = 0, None
         for number in range(MOST_PAIRS):
-            pair = self._pair(max(most_steps - steps, most_steps // 2), random if number else None)
+            # a second pair is needed in any case: the first one alone tells no scatter
+            left = most_steps if not number else max(most_steps - steps, 2 * steps)
+            pair = self._pair(left, random if number else None)
             if pair is None:
                 break
             own, fine, taken = pair

@@ -43,8 +43,10 @@ GROWTH: Final = 10e-3
 """Time at its beginning that is left to vibrations to grow to their size (s); half of a shorter one."""
 STEPS: Final = 20_000
 """Steps of that piece with tighter tolerances at most, or `STEPS_SHARE` of the simulation's own steps if that is more."""
-STEPS_OF_A_PAIR: Final = 60_000
-"""Expected steps up to which the whole simulation is repeated; of a longer one a stretch that takes as many."""
+STEPS_OF_WHOLE: Final = 60_000
+"""Expected steps up to which the whole simulation is repeated."""
+STEPS_OF_STRETCH: Final = 20_000
+"""Steps that a stretch of a longer one is expected to take, or a quarter of all that may be taken if that is more."""
 STEPS_IN_ALL: Final = 80_000
 """Steps after which no further pair is begun."""
 STEPS_OF_SIMULATION: Final = 160_000
@@ -182,12 +184,12 @@ class Vibrations:
 
     def _longer(self, piece: Stretch, time: float, dear: float, in_all: int) -> Stretch:
         """What is repeated in pairs: the whole simulation up to a time (s), if a pair takes so few steps, with `dear` of them in
-        a second of the bearing; or what follows the beginning of a piece, as long as that.
+        a second of the bearing; or what follows the beginning of a piece, as long as a few pairs allow.
         """
         whole = self._whole
-        length = min(STEPS_OF_A_PAIR, in_all) / dear
-        if whole.state is not None and time - whole.since <= length:
+        if whole.state is not None and dear * (time - whole.since) <= min(max(STEPS_OF_WHOLE, in_all // 2), in_all):
             return self._stretch(whole.since, whole.state, time - whole.since, 0.0)
+        length = max(STEPS_OF_STRETCH, in_all // 4) / dear
         return replace(piece, length=max(piece.length, min(time - piece.begin, length)))
 
     def _stretch(self, begin: float, state: Array, length: float, growth: float) -> Stretch:
