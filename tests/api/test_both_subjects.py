@@ -187,13 +187,14 @@ def test_a_full_memory_ends_a_run(name: str, monkeypatch: pytest.MonkeyPatch) ->
 
 def test_a_run_that_was_cut_off_goes_on(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Ctrl-C in the middle, then a resumed run: the same bits as a run without a break."""
-    how: dict[str, Any] = {"duration": 1e-3, "save_every": 2e-5, "checkpoint_every": 2e-4}
+    how: dict[str, Any] = {"duration": 5e-4, "save_every": 2e-5, "checkpoint_every": 2e-4}
+    how["save_groups"] = ("cage", "contacts", "energy", "peaks")
     whole = simulation(name).run(**how, output=tmp_path / "whole.h5")
     keep = running.Run._keep
 
     def interrupted(self: running.Run, records: Any) -> None:
         keep(self, records)
-        if self.sim.time > 5e-4:
+        if self.sim.time > 3e-4:
             signal.raise_signal(signal.SIGINT)
 
     path = tmp_path / "cut.h5"

@@ -24,6 +24,7 @@ import h5py
 import numpy as np
 import pytest
 from shared import environment
+from synthetic import StubScene, make_run
 
 import trbdyn as trb
 from trbdyn.errors import FileError, InputError
@@ -583,6 +584,20 @@ def refusal(path: Path) -> str:
     return text.removeprefix(f"{path}: ")
 
 
+@pytest.fixture(scope="module")
+def whole_file(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """What is in the file of a run."""
+    return write(tmp_path_factory.mktemp("whole") / "run.h5", make_run(), StubScene()).read_bytes()
+
+
+@pytest.fixture
+def written(tmp_path: Path, whole_file: bytes) -> Path:
+    """A file of one's own with the same content."""
+    path = tmp_path / "run.h5"
+    path.write_bytes(whole_file)
+    return path
+
+
 def damage(name: str) -> Callable[[h5py.File], None]:
     def put_head(file: h5py.File, text: str) -> None:
         del file["run/head"]
@@ -642,17 +657,14 @@ def damage(name: str) -> Callable[[h5py.File], None]:
         ("external", "leads out of the file"),
     ],
 )
-def test_damaged_files_are_refused_clearly(
-    tmp_path: Path, synthetic: Any, stub_scene: Any, name: str, words: str
-) -> None:
-    path = write(tmp_path / "run.h5", synthetic, stub_scene)
-    with h5py.File(path, "r+") as file:
+def test_damaged_files_are_refused_clearly(written: Path, name: str, words: str) -> None:
+    with h5py.File(written, "r+") as file:
         damage(name)(file)
-    assert words in refusal(path)
+    assert words in refusal(written)
 
 
-def test_truncated_files_raise_file_errors(tmp_path: Path, synthetic: Any, stub_scene: Any) -> None:
-    data = write(tmp_path / "run.h5", synthetic, stub_scene).read_bytes()
+def test_truncated_files_raise_file_errors(tmp_path: Path, whole_file: bytes) -> None:
+    data = whole_file
     assert len(data) == int.from_bytes(data[28:36], "little")  # its end, as the superblock has it
     for share in (0.0, 0.001, 0.01, 0.3, 0.9, 0.999):
         path = tmp_path / f"cut{share}.h5"
@@ -660,11 +672,9 @@ def test_truncated_files_raise_file_errors(tmp_path: Path, synthetic: Any, stub_
         assert "cut short" in refusal(path) or "not an HDF5 file" in refusal(path)
 
 
-def test_an_open_file_is_checked_once_for_all_fields(
-    tmp_path: Path, synthetic: Any, stub_scene: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_open_file_is_checked_once_for_all_fields(written: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What the file says of itself is read once for each time it is opened, not for each field."""
-    result = load(write(tmp_path / "run.h5", synthetic, stub_scene))
+    result = load(written)
     read, heads = file_source._read_head, []
     monkeypatch.setattr(file_source, "_read_head", lambda *given: heads.append(1) or read(*given))
     with result._source.held_open():
@@ -675,11 +685,9 @@ def test_an_open_file_is_checked_once_for_all_fields(
     assert len(heads) == 2
 
 
-def test_damage_that_shows_when_a_bearing_is_looked_for_is_said(
-    tmp_path: Path, synthetic: Any, stub_scene: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_damage_that_shows_when_a_bearing_is_looked_for_is_said(written: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The file was damaged after it was loaded: HDF5's own error is none that users can do something with."""
-    result = load(write(tmp_path / "run.h5", synthetic, stub_scene))
+    result = load(written)
 
     def broken(*_: Any) -> None:
         raise RuntimeError("bad object header version number")
@@ -689,11 +697,10 @@ def test_damage_that_shows_when_a_bearing_is_looked_for_is_said(
         raise AssertionError
 
 
-def test_a_file_replaced_behind_its_result_is_noticed(tmp_path: Path, synthetic: Any, stub_scene: Any) -> None:
-    path = write(tmp_path / "run.h5", synthetic, stub_scene)
-    loaded = load(path)
+def test_a_file_replaced_behind_its_result_is_noticed(written: Path, synthetic: Any, stub_scene: Any) -> None:
+    loaded = load(written)
     time_before = loaded.time
-    write(path, synthetic, stub_scene, overwrite=True)
+    write(written, synthetic, stub_scene, overwrite=True)
     assert loaded.time is time_before
     with pytest.raises(FileError, match="replaced"):
         loaded.cage_position  # noqa: B018

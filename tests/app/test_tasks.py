@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from shared import work_undrawn
 
 import trbdyn as trb
 from trbdyn.cli import main
@@ -90,7 +91,8 @@ def test_a_planned_run_is_the_case_beside_it(tmp_path: Path, monkeypatch: pytest
     assert names["result"].summary()["torque"] == trb.load("run.h5").summary()["torque"]
 
 
-def test_a_task_says_what_is_wrong_and_can_be_stopped(tmp_path: Path) -> None:
+def test_a_task_says_what_is_wrong_and_can_be_stopped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("trbdyn.extras.app.jobs.work", work_undrawn)
     bench = Bench.open(tmp_path)
     given = arguments(Design(typed={**SHORT, "scene.axial_load": "1e9"}))
     job = bench.start("run", "too much", given, {})

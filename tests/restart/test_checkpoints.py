@@ -21,6 +21,7 @@ from trbdyn.run import checkpoint
 from trbdyn.run.checkpoint import Checkpoint, checkpoint_path, next_time, previous_path
 
 EVERY, END = 0.9e-3, 5e-3
+GROUPS = ("cage", "rollers", "energy", "peaks")  # those that are compared
 
 
 def scene() -> trb.Scene:
@@ -28,7 +29,12 @@ def scene() -> trb.Scene:
 
 
 def run(output: Path | None = None, **options: Any) -> trb.Result:
-    chosen: dict[str, Any] = {"duration": END, "checkpoint_every": EVERY, "save_every": 2e-5} | options
+    chosen: dict[str, Any] = {
+        "duration": END,
+        "checkpoint_every": EVERY,
+        "save_every": 2e-5,
+        "save_groups": GROUPS,
+    } | options
     return trb.Simulation(scene()).run(output=output, **chosen)
 
 
@@ -158,10 +164,22 @@ def damage(data: bytes, how: str) -> bytes:
 HOW = ["empty", "short", "one byte less", "one bit", "noise", "later version"]
 
 
-@pytest.mark.parametrize("how", HOW)
-def test_the_last_good_checkpoint_is_used_and_said(broken: Path, reference: trb.Result, how: str) -> None:
+def falls_back(broken: Path) -> str:
+    """What is told when a run goes on from the checkpoint before the newest one, which cannot be used."""
+    before = checkpoint.read(previous_path(checkpoint_path(broken)))
+    told: list[str] = []
+    assert checkpoint.read_last_good(broken, told.append).to_bytes() == before.to_bytes()
+    (text,) = told
+    assert "going on from the one before it" in text
+    return text
+
+
+def test_the_last_good_checkpoint_is_used_and_said(broken: Path, reference: trb.Result) -> None:
     newest = checkpoint_path(broken)
-    newest.write_bytes(damage(newest.read_bytes(), how))
+    whole = newest.read_bytes()
+    for how in HOW:
+        newest.write_bytes(damage(whole, how))
+        falls_back(broken)
     with pytest.warns(UserWarning, match="going on from the one before it"):
         result = trb.resume(broken)
     same(result, reference)
@@ -221,9 +239,7 @@ def test_a_damaged_result_file_costs_its_own_records_alone(broken: Path, referen
 def test_a_lost_result_file_before_the_first_checkpoint_is_made_anew(tmp_path: Path, reference: trb.Result) -> None:
     path = tmp_path / "run.h5"
     with pytest.raises(Cut):
-        trb.Simulation(scene()).run(
-            duration=END, save_every=2e-5, checkpoint_every=EVERY, output=path, callback=cut_after(0.0)
-        )
+        run(path, callback=cut_after(0.0))
     start = previous_path(checkpoint_path(path))
     if start.exists():
         start.replace(checkpoint_path(path))
@@ -299,9 +315,11 @@ def test_a_checkpoint_of_a_core_that_takes_other_numbers_is_told_from_a_damaged_
         trb.resume(broken)
 
 
-@pytest.mark.parametrize(
-    "changes",
-    [
+def test_checkpoints_of_wrong_kinds_fall_back(broken: Path) -> None:
+    path = checkpoint_path(broken)
+    found = checkpoint.read(path)
+    values = {name: getattr(found, name) for name in Checkpoint.__dataclass_fields__}
+    wrong: list[dict[str, Any]] = [
         {"time": "now"},
         {"done": -1},
         {"done": True},
@@ -309,15 +327,10 @@ def test_a_checkpoint_of_a_core_that_takes_other_numbers_is_told_from_a_damaged_
         {"counters": {"pocket": "three"}},
         {"state": np.array([np.nan])},
         {"peaks": np.array([np.nan])},
-    ],
-)
-def test_checkpoints_of_wrong_kinds_fall_back(broken: Path, reference: trb.Result, changes: dict[str, Any]) -> None:
-    path = checkpoint_path(broken)
-    found = checkpoint.read(path)
-    values = {name: getattr(found, name) for name in Checkpoint.__dataclass_fields__}
-    path.write_bytes(Checkpoint(**values | changes).to_bytes())
-    with pytest.warns(UserWarning, match="cannot be used"):
-        same(trb.resume(broken), reference)
+    ]
+    for changes in wrong:
+        path.write_bytes(Checkpoint(**values | changes).to_bytes())
+        assert "cannot be used" in falls_back(broken), changes
 
 
 def test_the_file_is_small_and_readable(broken: Path) -> None:

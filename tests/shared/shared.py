@@ -68,6 +68,17 @@ def environment(**more: str) -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry), **more}
 
 
+def work_undrawn(*given: Any) -> None:
+    """A task of the page in its process, whose report has no images and a check of some tenths of a second."""
+    from trbdyn.extras.app import tasks
+    from trbdyn.reporting import page
+    from trbdyn.run import check
+
+    page.image = lambda *_: ""  # type: ignore[assignment]
+    check.BUDGET_S = 0.1  # type: ignore[misc]
+    tasks.work(*given)
+
+
 def benchmark(name: str, folder: Path, *words: str) -> tuple[dict[str, Any], str]:
     """What a script in benchmarks/ writes as JSON into a folder, and what it prints."""
     path = folder / f"{name}.json"
