@@ -71,7 +71,7 @@ COLUMNS: Final = {
     "kind": "text: class of the cage's motion",
     "value": "1: orbit over Cpr",
     "rate": "1/s: rate of the start between, over Cpr",
-    "turns": "1: turns of the cage of the longest run of the answer",
+    "turns": "1: turns of the cage of the longest run of the answer, or of a direction's starts",
     "error": "1: how far the orbit may be off, over Cpr",
     "kinds": "text: classes from rest and from a large whirl",
     "near": "text: classes that the answer leaves possible",
@@ -89,7 +89,8 @@ COLUMNS: Final = {
     "agreed": "1: number of scenes with an agreed verdict",
     "alike": "1: number of scenes whose starts are of one class with orbits that differ",
     "so_far": "1: number of scenes with a class of all starts that may go on",
-    "told": "1: number of scenes with a verdict, a direction, or a class that may go on",
+    "went_on": "1: of these, those with another class or orbit in the long run",
+    "told": "1: number of scenes with a verdict or a direction",
     "of_verdicts": "number of scenes by verdict",
     "forecasts": "1: directions that were followed",
     "forecasts_held": "1: of these, those whose time lies within the forecast",
@@ -228,9 +229,10 @@ def _summary(rows: Sequence[dict[str, Any]]) -> dict[str, Any]:
         "agreed": sum(row["answer"] == "agreed" for row in rows),
         "alike": sum(row["answer"] == "alike" for row in rows),
         "so_far": sum(row["answer"] == SO_FAR for row in rows),
-        "told": sum(row["answer"] != "unknown" for row in rows),
+        "went_on": sum(is_wrong(row) for row in long if row["answer"] == SO_FAR),
+        "told": sum(row["answer"] not in ("unknown", SO_FAR) for row in rows),
         "largest_difference": max(off, default=None),
-        "wrong_classes": sum(is_wrong(row) for row in long if row["answer"] in (*OF_ONE, SO_FAR))
+        "wrong_classes": sum(is_wrong(row) for row in long if row["answer"] in OF_ONE)
         + sum(row["followed"] > 2.0 * NEAR for row in starts),
         "forecasts": len(ways),
         "forecasts_held": sum(row["time_low"] <= row["time_there"] <= row["time_high"] for row in ways),
@@ -238,13 +240,10 @@ def _summary(rows: Sequence[dict[str, Any]]) -> dict[str, Any]:
 
 
 def is_wrong(row: dict[str, Any]) -> bool:
-    """Whether a long run contradicts the class or the orbit of an answer; the class alone where it was told to go on."""
+    """Whether a long run contradicts the class or the orbit of an answer."""
     classes = {_circles(kind) for kind in (row["kind"], *row["near"].split(" / ")) if kind != "unknown"}
     off = abs(row["followed"] - row["value"])
-    return bool(
-        _circles(row["followed_kind"]) not in classes
-        or (row["answer"] != SO_FAR and off > max(2.0 * NEAR, row["error"] + NEAR))
-    )
+    return bool(_circles(row["followed_kind"]) not in classes or (off > max(2.0 * NEAR, row["error"] + NEAR)))
 
 
 def _verdicts(rows: Sequence[dict[str, Any]]) -> list[str]:

@@ -49,6 +49,22 @@ def test_words_of_starts_that_agree() -> None:
     )
     alike = replace(row(0.0, "alike", 0.7, "circling", ends=(0.8, 0.6)), kinds=("circling", "circling"))
     assert alike.words == "it whirls from all starts; their orbits differ or wander: 0.60 to 0.80 Cpr"
+    two = replace(row(0.0, "agreed", 0.23, "rocking"), near=("rocking", "unstable"))
+    assert two.words == "all starts agree: it hangs and rocks or moves without order, orbit 0.23 Cpr within 0.02"
+    goes = row(0.0, "so far", 0.7, "circling", ends=(0.8, 0.6), reason="from rest the roller spacing increases").words
+    assert goes == (
+        "so far it whirls from all starts, orbit 0.60 to 0.80 Cpr; it may go on to another motion: from rest the roller spacing increases"
+    )
+
+
+def test_words_of_a_direction() -> None:
+    """Whose way it is, and when it comes there, if ever."""
+    way = {"rate": 0.05, "rate_error": 0.001, "time_low": 4.0, "movers": (0,)}
+    assert row(0.0, "grows", 0.9, "circling", time_high=16.0, **way).words == (
+        "from rest the orbit grows by 0.05 Cpr in a second towards 0.90 Cpr, where it whirls; expected there after 4 to 16 s more"
+    )
+    late = row(0.0, "grows", 0.9, "circling", time_high=math.inf, **way).words
+    assert late.endswith("expected there after 4 s more at the earliest; it slows down and may end before")
 
 
 @pytest.mark.slow

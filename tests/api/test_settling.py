@@ -383,6 +383,18 @@ def test_two_of_three_starts_agree_and_the_third_comes() -> None:
     assert (goes.verdict, goes.open) == ("dies", (2,))
 
 
+def test_a_start_between_that_stays_apart_is_no_agreement() -> None:
+    """Two that agree do not tell the motion where a third one has another; one that comes there, or has only begun, is none."""
+    outer = whirling(lambda t: 0.7 + 0 * t), whirling(lambda t: 0.7 + 0 * t, 100)
+    apart, comes = whirling(lambda t: 0.4 + 0 * t), whirling(lambda t: 0.4 + 0.03 * t)
+    kinds = ["circling"] * 3
+    assert obs.compare_starts(outer, apart, window=20, creep_turns=30.0, kinds=kinds).verdict == "unknown"
+    found = obs.compare_starts(outer, comes, window=20, creep_turns=30.0, kinds=kinds)
+    assert (found.verdict, found.movers, round(found.orbit, 2)) == ("agreed", (2,), 0.70)
+    begun = comes[0][:20], {"orbit radius": comes[1]["orbit radius"][:20]}
+    assert obs.compare_starts(outer, begun, window=20, creep_turns=30.0, kinds=kinds).verdict == "agreed"
+
+
 def test_starts_of_one_class_whose_orbits_differ_are_alike() -> None:
     one, other = whirling(lambda t: 0.66 + 0 * t), whirling(lambda t: 0.81 + 0 * t)
     both = ["circling", "circling"]

@@ -28,7 +28,7 @@ from trbdyn.model.roller import Scatter
 from trbdyn.model.scene import Scene
 from trbdyn.model.start import Start
 from trbdyn.results import observables
-from trbdyn.results.observables.starts import SLOW
+from trbdyn.results.observables.starts import OF_STARTS, SLOW
 from trbdyn.results.result import Result
 from trbdyn.run.options import RunOptions
 from trbdyn.run.simulation import Simulation
@@ -96,7 +96,7 @@ class OfRollers:
     force : float
         Largest force of a roller on the cage in the last window of that start (N); nan for an unknown motion.
     turns : int
-        Turns of the cage of each run.
+        Turns of the cage of the longest run; of a direction that of the starts whose way it is.
     processor_time : float
         Processor time of all runs (s).
     kinds : tuple of str
@@ -132,12 +132,11 @@ class OfRollers:
             low, high = (end(*found.ends, found.orbit + way * found.error) for end, way in ((min, -1.0), (max, 1.0)))
             low = max(low, 0.0)
             if found.verdict == "so far":
-                return (
-                    f"so far it {does} from all starts, orbit {low:.2f} to {high:.2f} Cpr; it may go on: {found.reason}"
-                )
+                return f"so far it {does} from all starts, orbit {low:.2f} to {high:.2f} Cpr; it may go on to another motion: {found.reason}"
             return f"it {does} from all starts; their orbits differ or wander: {low:.2f} to {high:.2f} Cpr"
         if found.verdict in ("grows", "dies"):
-            way = f"the orbit {_way(found.rate)}"
+            of = f"{OF_STARTS[found.movers[0]]} " if found.movers else ""
+            way = f"{of}the orbit {_way(found.rate)}"
             when = f"expected there {self._when('after')}"
             return f"{way} towards {found.orbit:.2f} Cpr, where it {does}; {when}"
         if found.verdict == "meets":
@@ -145,8 +144,8 @@ class OfRollers:
             return f"starts approach each other by {abs(found.rate):.2g} Cpr in a second near {found.orbit:.2f} Cpr; {when}"
         if found.verdict in ("two motions", "start decides"):
             both = "; ".join(
-                f"from {start} it {WHIRLS.get(kind, 'moves')}, orbit {end:.2f} Cpr"
-                for start, kind, end in zip((REST, "a large whirl"), self.kinds, found.ends, strict=True)
+                f"{start} it {WHIRLS.get(kind, 'moves')}, orbit {end:.2f} Cpr"
+                for start, kind, end in zip(OF_STARTS[:2], self.kinds, found.ends, strict=True)
             )
             long = f" for {found.time_low:.2g} s or longer" if found.verdict == "start decides" else ""
             return f"two motions are possible, the start decides{long}: {both}"
@@ -453,17 +452,18 @@ class _Search:
         hits = float(last.rattle.per_second) if told else math.nan
         force = float(np.max(last.peaks["pocket_force_peak"])) if told else math.nan
         kind = last.cage_motion.kind if told else "unknown"
-        turns = max(run.turns for run in runs.values())
+        directed = found.movers if found.verdict in ("grows", "dies", "meets") else ()
+        turns = max(runs[ORDER[k]].turns for k in (directed or range(len(ORDER))) if ORDER[k] in runs)
         first, second = (runs[start].last[name].cage_motion.kind for start in (REST, LARGE))
-        near = self._near(name, found, like, runs)
+        near = self._near(name, found, runs)
         return OfRollers(name, self.scatter, self.seed, found, kind, hits, force, turns, spent, (first, second), near)
 
-    def _near(self, name: str, found: observables.Compared, like: str, runs: dict[str, _Run]) -> tuple[str, ...]:
+    def _near(self, name: str, found: observables.Compared, runs: dict[str, _Run]) -> tuple[str, ...]:
         """Classes of starts that agree or are alike, with those that the range of their orbit leaves possible."""
         if found.verdict not in ONE_CLASS:
             return ()
-        there = (like, BETWEEN) if math.isfinite(found.rate) else (REST, LARGE)
-        motions = [runs[start].last[name].cage_motion for start in there]
+        there = [start for k, start in enumerate(ORDER) if start in runs and k not in found.movers]
+        motions = [runs[start].last[name].cage_motion for start in there if runs[start].turns >= 2 * self.window]
         orbits = [max(found.orbit + way * found.error, 0.0) for way in (0.0, -1.0, 1.0)]
         kinds = [one.kind for one in motions] + [one.kind_at(orbit) for one in motions for orbit in orbits]
         return tuple(dict.fromkeys(kinds))

@@ -41,6 +41,8 @@ MOVED: Final = 0.02
 """Way of a start within a part of its run from which on a direction is told, in units of Cpr."""
 SHARE: Final = 0.2
 """Change of the roller spacing, over the spacing, up to which it does not matter, within the time in which nothing must go on."""
+OF_STARTS: Final = ("from rest", "from a large whirl", "from a small whirl")
+"""The starts in words."""
 SLOW: Final = 250.0
 """Turns of the cage within which the rollers creep from which on starts are not expected to agree: the start decides."""
 NO_WHIRL: Final = frozenset({"stable", "rocking"})
@@ -54,8 +56,8 @@ class Compared:
     Attributes
     ----------
     verdict : {"agreed", "alike", "so far", "grows", "dies", "meets", "two motions", "start decides", "unknown"}
-        Agreed: all starts have come to the same motion, or the one between and another have, and the third moves towards it and
-        is near to where the one between began. Alike: their motion is of one class, but their orbits differ by more, or wander.
+        Agreed: all starts have come to the same motion, or two of three have, and the last one moves towards it and is near to
+        where one of these began. Alike: their motion is of one class, but their orbits differ by more, or wander.
         Grows, dies: they have not, and the start between the two others moves towards the larger or the smaller one, or it is
         there already and the other follows. Meets: a larger one moves down and a smaller one up. Two motions: the outer ones have
         settled apart, and the start between them has gone to one of them; or a smaller one moves down and a larger one up. Start
@@ -83,7 +85,7 @@ class Compared:
         Starts whose longer runs may tell more: 0 from rest, 1 from a large whirl, 2 the one between. Where a direction is told,
         one that stands and one that follows behind are not among them.
     movers : tuple of int
-        Grows, dies, meets: the starts whose way the rate and the times are of.
+        Grows, dies, meets: the starts whose way the rate and the times are of; agreed: the one that has not come there yet.
     """
 
     verdict: Literal["agreed", "alike", "so far", "grows", "dies", "meets", "two motions", "start decides", "unknown"]
@@ -179,29 +181,30 @@ def compare_starts(
     ('agreed', 0.1)
     """
     limit, of_outer = LIMITS[COMPARED], kinds[:2]
-    runs = [*outer, *([] if between is None else [between])]
+    size = min(means[COMPARED].size for _, means in outer)
+    # a start between that has only begun tells nothing yet
+    third = None if between is None or min(between[0].size, size) < 2 * window else between
+    runs = [*outer, *([] if third is None else [third])]
     series = [(when, means[COMPARED]) for when, means in runs]
-    size = min(values.size for _, values in series[:2])
     ends = (float(series[0][1][-window:].mean()), float(series[1][1][-window:].mean()))
     middle, apart = 0.5 * sum(ends), abs(ends[1] - ends[0])
     alike: Compared | None = None
-    unknown, half = [math.inf, math.inf], max(window, size // 2)
-    goes = [_goes_on(run, half, creep_turns) for run in outer]
-    ways = "; ".join(
-        f"{of} the {way}" for of, way in zip(("from rest", "from a large whirl"), goes, strict=True) if way
-    )
-    for length in dict.fromkeys((window, half)):
-        means = [float(values[-length:].mean()) for _, values in series[:2]]
-        unknown = [mean_unknown(when[-length:], values[-length:]) for when, values in series[:2]]
-        error = 0.5 * abs(means[1] - means[0]) + max(unknown)
-        if agree(means, unknown, of_outer) and not any(goes):
-            return Compared("agreed", 0.5 * sum(means), error, ends=(means[0], means[1]))
-        differ = abs(means[1] - means[0])
+    unknown, halves = [math.inf, math.inf], [max(window, min(when.size, size) // 2) for when, _ in series]
+    goes = [_goes_on(run, half, creep_turns) for run, half in zip(runs, halves, strict=True)]
+    ways = "; ".join(f"{of} the {way}" for of, way in zip(OF_STARTS, goes, strict=False) if way)
+    for parts in ([window] * len(runs), halves):
+        last_ones = [(when[-part:], values[-part:]) for (when, values), part in zip(series, parts, strict=True)]
+        means = [float(values.mean()) for _, values in last_ones]
+        unknown = [mean_unknown(*one) for one in last_ones]
+        both, low, high = (means[0], means[1]), min(means), max(means)
+        error, differ = 0.5 * (high - low) + max(unknown), high - low
+        of_all = kinds[: len(runs)]
+        if agree(means, unknown, of_all) and not any(goes):
+            return Compared("agreed", 0.5 * (low + high), error, ends=both)
         long_enough = size >= max(2 * window, CREEP_TIMES * np.nan_to_num(creep_turns) if differ > WANDERS else 0.0)
-        if differ <= ALIKE and all(one <= WANDERS for one in unknown) and long_enough and of_outer and _similar(kinds):
-            alike = Compared(
-                "so far" if ways else "alike", 0.5 * sum(means), error, reason=ways, ends=(means[0], means[1])
-            )
+        if differ <= ALIKE and all(one <= WANDERS for one in unknown) and long_enough and of_all and _similar(of_all):
+            verdict: Literal["alike", "so far"] = "so far" if ways else "alike"
+            alike = Compared(verdict, 0.5 * (low + high), error, reason=ways, ends=both)
     if alike is not None and not ways:
         return alike
     creeps = "" if math.isnan(creep_turns) else f"; the rollers creep within {creep_turns:.3g} turns of the cage"
@@ -209,7 +212,7 @@ def compare_starts(
     said = (
         f"from rest the orbit is {ends[0]:.2f} Cpr, from a large whirl {ends[1]:.2f} Cpr{classes}{ways and '; '}{ways}"
     )
-    if between is None or series[2][1].size < 2 * window or size < 2 * window:
+    if third is None:
         if size >= 2 * window and (keeps := _keeps(series[:2], window)) and creep_turns > SLOW and apart > limit:
             return Compared("start decides", middle, 0.5 * apart, time_low=keeps, ends=ends)
         return alike or Compared("unknown", middle, 0.5 * apart, reason=f"{said}{creeps}", ends=ends)
@@ -218,20 +221,21 @@ def compare_starts(
     places = (*ends, now)
     near_end = min(ends, key=lambda end: abs(now - end))
     gone = abs(now - near_end) <= limit < apart
-    for k, last in ((0, 1), (1, 0)):
-        known = [mean_unknown(series[one][0][-window:], series[one][1][-window:]) for one in (k, 2)]
-        classes_of = [kinds[one] for one in (k, 2)] if len(kinds) == len(series) else []
+    for k, other, last in ((0, 2, 1), (1, 2, 0), (0, 1, 2)):
+        known = [mean_unknown(series[one][0][-window:], series[one][1][-window:]) for one in (k, other)]
+        classes_of = [kinds[one] for one in (k, other)] if len(kinds) == len(series) else []
         if (
-            not any(_goes_on(runs[one], window, creep_turns) for one in (k, 2))
-            and agree([places[k], now], known, classes_of)
-            and _comes(series[last], series[2], window, moves[last].way, places[k])
+            not any(_goes_on(runs[one], window, creep_turns) for one in (k, other))
+            and agree([places[k], places[other]], known, classes_of)
+            and _comes(series[last], series, window, moves[last].way, places[k])
         ):
-            orbit, rate = 0.5 * (places[k] + now), moves[last].rate
-            return Compared("agreed", orbit, 0.5 * abs(places[k] - now) + max(known), rate.rate, rate.error, ends=ends)
-    third = moves[2].rate
+            orbit, rate = 0.5 * (places[k] + places[other]), moves[last].rate
+            off = 0.5 * abs(places[k] - places[other]) + max(known)
+            return Compared("agreed", orbit, off, rate.rate, rate.error, ends=ends, movers=(last,))
+    small = moves[2].rate
     stand = moves[0].way == moves[1].way == 0.0 and not any(goes)
     if gone and stand and size >= CREEP_TIMES * creep_turns and apart > limit + sum(unknown):
-        return Compared("two motions", near_end, 0.5 * apart, third.rate, third.error, ends=ends)
+        return Compared("two motions", near_end, 0.5 * apart, small.rate, small.error, ends=ends)
 
     def towards(
         verdict: Literal["grows", "dies", "meets"],
@@ -252,12 +256,12 @@ def compare_starts(
         way = places[high] - places[low]
         if way > limit:
             pair = (low, high) if 2 in (low, high) else (0, 1)
-            both = moves[high].less(moves[low])
-            return towards("meets", 0.5 * (places[low] + places[high]), way, both, (low, high), pair)
+            distance = moves[high].less(moves[low])
+            return towards("meets", 0.5 * (places[low] + places[high]), way, distance, (low, high), pair)
         first = [float(values[window : 2 * window].mean()) for _, values in series]
         if way < 0.0 and max(first[k] for k in downs) < min(first[k] for k in ups):
             # what was smaller shrinks and what was larger grows: a motion that nothing keeps lies between
-            return Compared("two motions", near_end, 0.5 * apart, third.rate, third.error, ends=ends)
+            return Compared("two motions", near_end, 0.5 * apart, small.rate, small.error, ends=ends)
     if (ups or downs) and not (ups and downs):
         to = max(places) if ups else min(places)
         # one that moves alone tells a direction only where the start between moves, too, or has gone to the other side
@@ -272,9 +276,9 @@ def compare_starts(
         return Compared("start decides", middle, 0.5 * apart, time_low=keeps, ends=ends)
     if alike is not None:
         return alike
-    how = f"a start between them moves by {third.rate:+.2g} with an error of {third.error:.1g} Cpr in a second"
+    how = f"a start between them moves by {small.rate:+.2g} with an error of {small.error:.1g} Cpr in a second"
     reason = f"{said}, and {how}{creeps}"
-    return Compared("unknown", middle, 0.5 * apart, third.rate, third.error, reason=reason, ends=ends)
+    return Compared("unknown", middle, 0.5 * apart, small.rate, small.error, reason=reason, ends=ends)
 
 
 def _goes_on(run: Turns, length: int, creep_turns: float) -> str:
@@ -334,13 +338,16 @@ def _keeps(series: Sequence[tuple[Array, Array]], window: int) -> float:
     return min(spans) if kept else 0.0
 
 
-def _comes(series: tuple[Array, Array], between: tuple[Array, Array], window: int, way: float, to: float) -> bool:
+def _comes(
+    series: tuple[Array, Array], all_of: Sequence[tuple[Array, Array]], window: int, way: float, to: float
+) -> bool:
     """Whether a start moves (1 up, -1 down, 0 not) to a place over Cpr, does not slow down before it by its `forecast`, and has
-    come near to where another one began that has gone there.
+    come near to where another one began.
     """
     when, values = series[0][window:], series[1][window:]
-    now, began = float(values[-window:].mean()), float(between[1][:LEAST_BLOCKS].mean())
-    if way * (to - now) <= 0.0 or way * (began - now) > ALIKE or values.size < 2 * LEAST_BLOCKS:
+    now = float(values[-window:].mean())
+    began = (float(other[1][:LEAST_BLOCKS].mean()) for other in all_of if other is not series)
+    if way * (to - now) <= 0.0 or min(way * (one - now) for one in began) > ALIKE or values.size < 2 * LEAST_BLOCKS:
         return False
     ends = forecast(when, values)
     return ends.high >= to - LIMITS[COMPARED] if way > 0.0 else ends.low <= to + LIMITS[COMPARED]
