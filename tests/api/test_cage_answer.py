@@ -53,7 +53,8 @@ def test_words_of_starts_that_agree() -> None:
     assert two.words == "all starts agree: it hangs and rocks or moves without order, orbit 0.23 Cpr within 0.02"
     goes = row(0.0, "so far", 0.7, "circling", ends=(0.8, 0.6), reason="from rest the roller spacing increases").words
     assert goes == (
-        "so far it whirls from all starts, orbit 0.60 to 0.80 Cpr; it may go on to another motion: from rest the roller spacing increases"
+        "so far it whirls from all starts, orbit 0.60 to 0.80 Cpr; it may go on to another motion: from rest the roller spacing "
+        "increases"
     )
 
 

@@ -132,7 +132,8 @@ class OfRollers:
             low, high = (end(*found.ends, found.orbit + way * found.error) for end, way in ((min, -1.0), (max, 1.0)))
             low = max(low, 0.0)
             if found.verdict == "so far":
-                return f"so far it {does} from all starts, orbit {low:.2f} to {high:.2f} Cpr; it may go on to another motion: {found.reason}"
+                now = f"so far it {does} from all starts, orbit {low:.2f} to {high:.2f} Cpr"
+                return f"{now}; it may go on to another motion: {found.reason}"
             return f"it {does} from all starts; their orbits differ or wander: {low:.2f} to {high:.2f} Cpr"
         if found.verdict in ("grows", "dies"):
             of = f"{OF_STARTS[found.movers[0]]} " if found.movers else ""
