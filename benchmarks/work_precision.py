@@ -323,7 +323,7 @@ def write_table(report: common.Report, path: Path) -> None:
         "points": {name: sorted(found, key=lambda one: one["scale"]) for name, found in rows.items()},
     }
     before = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
-    if "load_drop" in before:  # of load_drop.py
+    if "load_drop" in before:  # measured apart: docs/howto/loads.md
         table["load_drop"] = before["load_drop"]
     path.write_text(json.dumps(common.plain(table), indent=1, allow_nan=False) + "\n", encoding="utf-8")
     print(f"wrote {path}")

@@ -73,15 +73,6 @@ def numbers(of: Callable[[], trb.Scene], names: tuple[str, ...] = FRICTION) -> d
     return {name: summary(of, made_with)[name] for name in names}
 
 
-def laws() -> dict[str, float]:
-    """Laws of rolling resistance at the ends and in the middle of their picture."""
-    from rolling_laws import LAWS
-
-    return {
-        f"{name}, W = {w:g}": float(law(w, 1e-10, 4460.0)) for name, law in LAWS.items() for w in (2e-7, 5e-5, 4e-4)
-    }
-
-
 @cache
 def long_run() -> trb.Result:
     return trb.Simulation(scene()).run(revolutions=TURNS)
@@ -198,9 +189,7 @@ PICTURES: Final[dict[str, tuple[Callable[[Path], None], Callable[[], dict[str, f
     "docs/pictures/viewer.png": (viewer, partial(numbers, scene)),
     "docs/pictures/stribeck.png": (stribeck, partial(numbers, slow)),
     "docs/pictures/app.png": (app, partial(numbers, design)),
-    "benchmarks/pictures/cage_map.png": (benchmark("cage_map.py"), partial(numbers, scene, MOTION)),
     "benchmarks/pictures/work_precision.png": (benchmark("work_precision.py"), partial(numbers, scene, COST)),
-    "benchmarks/pictures/rolling_laws.png": (benchmark("rolling_laws.py"), laws),
     "docs/pictures/paper_statements.png": (statements, campaign),
     **{
         f"docs/pictures/{name}.png": (partial(curves, name), partial(numbers, partial(of_curves, name), MOTION))

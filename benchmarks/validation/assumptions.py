@@ -19,8 +19,8 @@
   (`trbdyn.run.torque_laws`).
 
 The default is not chosen by these torques. Rolling resistance and heat follow numerical solutions of the contact
-(benchmarks/rolling). Boundary friction at ribs is that by which a maker gives starting torques, 0.2, and the rib's film the
-formula for contacts that are long along rolling, which this one is. Other `OPTIONS` are beside it.
+(docs/theory/lubrication.md). Boundary friction at ribs is that by which a maker gives starting torques, 0.2, and the rib's film
+the formula for contacts that are long along rolling, which this one is. Other `OPTIONS` are beside it.
 """
 
 from __future__ import annotations

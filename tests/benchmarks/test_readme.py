@@ -56,7 +56,7 @@ def test_a_script_replaces_its_own_part(tmp_path: Path) -> None:
         assert after.startswith(head)
         assert after.endswith(rest.split(f"<!-- /{name} -->")[1])
         assert f"| {name} |" in after
-    common.write_readme("cage_map", "the same again", path)
+    common.write_readme("work_precision", "the same again", path)
     with pytest.raises(ValueError, match="nowhere"):
         common.write_readme("nowhere", "", path)
 

@@ -1,18 +1,15 @@
-"""Laws of rolling resistance beside a numerical solution of the line contact, which no fit enters (benchmarks/rolling)."""
+"""Laws of rolling resistance beside a numerical solution of the line contact, which no fit enters (line_contact_solution.py)."""
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
+import line_contact_solution as solution
 import numpy as np
 import pytest
 
 from trbdyn import laws
 from trbdyn.results.notes import RANGES
-
-SOLUTION = Path(__file__).resolve().parents[2] / "benchmarks" / "rolling" / "solution.py"
-pytestmark = pytest.mark.skipif(not SOLUTION.is_file(), reason="the benchmarks are not part of a source distribution")
 
 POINTS = [(2.8e-5, 1e-10, 4460.0), (1e-4, 1e-10, 3745.0), (2e-6, 1e-10, 4460.0)]
 """W, U and G: the loads of bearings, and a contact that hardly deforms."""
@@ -20,8 +17,6 @@ POINTS = [(2.8e-5, 1e-10, 4460.0), (1e-4, 1e-10, 3745.0), (2e-6, 1e-10, 4460.0)]
 
 @pytest.fixture(scope="module")
 def solved() -> dict[tuple[float, float, float], Any]:
-    from rolling import solution
-
     return {point: solution.solve(*point, nodes=100) for point in POINTS}
 
 
@@ -69,8 +64,6 @@ def of_inlet(found: Any, u: float) -> float:
 
 
 def starved(w: float, u: float, g: float, **how: Any) -> Any:
-    from rolling import solution
-
     for nodes in (120, 150, 134, 170, 201):
         try:
             return solution.solve(w, u, g, nodes, viscosity=0.03, **how)

@@ -1,1 +1,0 @@
-"""Rolling resistance of a line contact: laws beside a numerical solution."""
