@@ -52,6 +52,15 @@ scenes = {
     "24 slices": lambda: trb.cases.paper_30310(
         3000.0, 4930.0, effects=effects.replace(quadrature="uniform", n_slices=24), start=trb.Start.whirl(0.9)
     ),
+    "two bearings": lambda: trb.Assembly.pair(
+        trb.cases.rig_30310(),
+        "back to back",
+        spread=0.15,
+        end_play=-40e-6,
+        shaft=trb.Shaft.hollow_cylinder(mass=6.0, outer_diameter=0.05, length=0.3),
+        speed_rpm=3000.0,
+        start=trb.Start.whirl(0.9),
+    ),
 }
 scene = scenes[name]()
 simulation = trb.Simulation(scene, accuracy="standard")
@@ -66,7 +75,7 @@ for _ in sys.stdin:
         steps += 1
     print(json.dumps([time.process_time() - began, steps]), flush=True)
 """
-SCENES: Final = ("colliding cage", "combined load", "smooth rolling", "24 slices")
+SCENES: Final = ("colliding cage", "combined load", "smooth rolling", "24 slices", "two bearings")
 
 
 class Worker:

@@ -179,15 +179,21 @@ typedef struct column_sum {
   quartet part[QUARTETS];
 } column_sum;
 
+/* One vector at a time: GCC copies several together by way of the memory, in halves, for which the next read of a whole one has to wait. */
+static inline quartet load(const double *from)
+{
+  quartet v;
+  memcpy(&v, from, sizeof v);
+  return v;
+}
+
+static inline void store(quartet v, double *to) { memcpy(to, &v, sizeof v); }
+
 _Static_assert(TRB_NP % QUARTET == 0, "a part of a column is whole vectors");
 
 static inline void add_column(const double *column, double factor, column_sum *sum)
 {
-  for (int k = 0; k < QUARTETS; k++) {
-    quartet own;
-    memcpy(&own, column + k * QUARTET, sizeof own);
-    sum->part[k] += factor * own;
-  }
+  for (int k = 0; k < QUARTETS; k++) sum->part[k] += factor * load(column + k * QUARTET);
 }
 
 /* The same for a part of the columns of a hub, which are `room` apart. */
@@ -195,14 +201,13 @@ static inline void add_part(const double *restrict columns, int room, int n, con
 {
   column_sum even, odd = {0}; /* one sum alone would wait for each of its additions */
   int        c = 0;
-  memcpy(&even, to, sizeof even);
+  for (int k = 0; k < QUARTETS; k++) even.part[k] = load(to + k * QUARTET);
   for (; c + 2 <= n; c += 2, columns += 2 * room) {
     add_column(columns, scale * x[c], &even);
     add_column(columns + room, scale * x[c + 1], &odd);
   }
   if (c < n) add_column(columns, scale * x[c], &even);
-  for (int k = 0; k < QUARTETS; k++) even.part[k] += odd.part[k];
-  memcpy(to, &even, sizeof even);
+  for (int k = 0; k < QUARTETS; k++) store(even.part[k] + odd.part[k], to + k * QUARTET);
 }
 
 /* Entries of a part, which may end beyond those of the hub. */
@@ -260,12 +265,7 @@ static int invert_wide(int n, int room, double *restrict a, double *restrict row
       double *const other = a + i * room;
       const double  m = other[c];
       if (i == c) continue;
-      for (int k = 0; k < room; k += TRB_NP) {
-        column_sum part;
-        memcpy(&part, other + k, sizeof part);
-        add_column(row + k, -m, &part);
-        memcpy(other + k, &part, sizeof part);
-      }
+      for (int k = 0; k < room; k += QUARTET) store(load(other + k) + -m * load(row + k), other + k);
       other[c] = -m * per;
     }
     memcpy(at, row, (size_t)room * sizeof *at);
@@ -376,13 +376,16 @@ static void follow(const double *restrict value, const double (*restrict slope)[
 enum { FLOW_PARTS = TRB_TANGENT_OUT / TRB_WIDE, REACTION_PARTS = TRB_RING_OUT / TRB_WIDE };
 _Static_assert(TRB_TANGENT_OUT % TRB_WIDE == 0 && TRB_RING_OUT % TRB_WIDE == 0, "flows and reactions are whole vectors");
 
+static inline trb_wide load_wide(const double *from)
+{
+  trb_wide v;
+  memcpy(&v, from, sizeof v);
+  return v;
+}
+
 static inline void add_wide(const double *column, double factor, int n, trb_wide *sum)
 {
-  for (int k = 0; k < n; k++) {
-    trb_wide own;
-    memcpy(&own, column + k * TRB_WIDE, sizeof own);
-    sum[k] += factor * own;
-  }
+  for (int k = 0; k < n; k++) sum[k] += factor * load_wide(column + k * TRB_WIDE);
 }
 
 static void follow_ring(const trb_ring_slopes *restrict slopes, const double *restrict value, const double *restrict step,
@@ -390,15 +393,17 @@ static void follow_ring(const trb_ring_slopes *restrict slopes, const double *re
 {
   trb_wide sum[FLOW_PARTS], even[REACTION_PARTS], odd[REACTION_PARTS] = {{0}};
   double   changed[TRB_TANGENT_OUT];
-  memcpy(sum, flow, sizeof sum);
+  for (int k = 0; k < FLOW_PARTS; k++) sum[k] = load_wide(flow + k * TRB_WIDE);
   for (int c = 0; c < TRB_RING_IN; c++) add_wide(slopes->flow[c], of_ring[c], FLOW_PARTS, sum);
-  memcpy(even, value, sizeof even);
+  for (int k = 0; k < REACTION_PARTS; k++) even[k] = load_wide(value + k * TRB_WIDE);
   for (int c = 0; c < TRB_TANGENT_IN; c++) add_wide(slopes->reaction[c], step[c], REACTION_PARTS, c % 2 == 0 ? even : odd);
   for (int c = 0; c < TRB_RING_IN; c++) add_wide(slopes->reaction[TRB_TANGENT_IN + c], of_ring[c], REACTION_PARTS, c % 2 == 0 ? even : odd);
-  for (int k = 0; k < REACTION_PARTS; k++) even[k] += odd[k];
-  memcpy(changed, sum, sizeof changed);
+  for (int k = 0; k < FLOW_PARTS; k++) memcpy(changed + k * TRB_WIDE, &sum[k], sizeof sum[k]);
   for (int i = 0; i < TRB_TANGENT_OUT; i++) flow[i] = trb_max(changed[i], least[i]);
-  memcpy(reaction, even, sizeof even);
+  for (int k = 0; k < REACTION_PARTS; k++) {
+    even[k] += odd[k];
+    memcpy(reaction + k * TRB_WIDE, &even[k], sizeof even[k]);
+  }
 }
 
 static void weigh(const double *restrict relative, const double *restrict scale, const double *restrict y, int n, double *restrict weights)

@@ -13,7 +13,7 @@ trb_status trb_impacts_create(const trb_model *m, trb_impacts *impacts, trb_mess
   const size_t n = (size_t)m->n_rollers;
   *impacts = (trb_impacts){0};
   impacts->speed = trb_memory_zeros(&impacts->memory, n + TRB_MOST_PAIRS, sizeof *impacts->speed);
-  impacts->factor = trb_memory_zeros(&impacts->memory, n + 1, sizeof *impacts->factor);
+  impacts->factor = trb_memory_zeros(&impacts->memory, n + TRB_MOST_BODIES, sizeof *impacts->factor);
   if (impacts->memory.lacks) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the impacts of %d rollers", m->n_rollers);
   trb_impacts_forget(m, impacts);
   return TRB_OK;
@@ -22,7 +22,7 @@ trb_status trb_impacts_create(const trb_model *m, trb_impacts *impacts, trb_mess
 void trb_impacts_forget(const trb_model *m, trb_impacts *impacts)
 {
   for (int j = 0; j < m->n_rollers + TRB_MOST_PAIRS; j++) impacts->speed[j] = INFINITY;
-  for (int j = 0; j <= m->n_rollers; j++) impacts->factor[j] = 1.0;
+  for (int j = 0; j < m->n_rollers + TRB_MOST_BODIES; j++) impacts->factor[j] = 1.0;
 }
 
 /* Speed of a roller's centre of mass relative to the point of another body that is there. */
@@ -81,24 +81,27 @@ static double factor_of(const trb_approach *now, double step, const trb_impact_m
   return trb_clamp(measure->share * finer, measure->least, 1.0);
 }
 
-/* Least factor of the pairs without a roller. */
-static double factor_of_hub(trb_impacts *impacts, const trb_dynamics *d, const trb_instant *at, double step,
-                            const trb_impact_measure *measure)
+static void take_least(double *least, double factor) { *least = trb_min(*least, factor); }
+
+/* Pairs without a roller: the factor is that of both bodies. */
+static void look_at_hub(trb_impacts *impacts, const trb_dynamics *d, const trb_instant *at, double step, const trb_impact_measure *measure)
 {
-  double least = 1.0;
+  double *const of_body = impacts->factor + d->model->n_rollers;
   for (int i = 0; i < d->work->n_hub; i++) {
     const trb_pair *pair = d->work->hub[i].pairs[0];
     if (pair->kind->approach == NULL) continue;
     const trb_approach now = pair->kind->approach(d->model, pair, at);
-    least = trb_min(least, factor_of(&now, step, measure, &impacts->speed[d->model->n_rollers + d->work->hub[i].index[0]]));
+    const double       factor = factor_of(&now, step, measure, &impacts->speed[d->model->n_rollers + d->work->hub[i].index[0]]);
+    take_least(&of_body[pair->a], factor);
+    take_least(&of_body[pair->b], factor);
   }
-  return least;
 }
 
 /* No roller is near anything; of those that are not chosen (ascending) nothing is kept. */
 static void begin(const trb_model *m, trb_impacts *impacts, const int *chosen, int n)
 {
   int next = 0;
+  for (int b = 0; b < TRB_MOST_BODIES; b++) impacts->factor[m->n_rollers + b] = 1.0;
   for (int j = 0; j < m->n_rollers; j++) {
     impacts->factor[j] = 1.0;
     if (next < n && chosen[next] == j) next++;
@@ -111,7 +114,7 @@ void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_mot
 {
   const trb_model *m = d->model;
   trb_drive        drive;
-  double           rise[TRB_MOST_PAIRS], least = 1.0;
+  double           rise[TRB_MOST_PAIRS];
   if (d->n_fast > 0 || d->work->n_hub > 0) {
     trb_motion_at(motion, m, time, &drive);
     place(impacts, d, &drive, y);
@@ -131,13 +134,13 @@ void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_mot
         trb_roller_pose_unpack_centre(m, &drive, j, y_roller, &r);
         now.speed = closing_speed(&r, body);
       }
-      impacts->factor[j] = trb_min(impacts->factor[j], factor_of(&now, step, measure, &impacts->speed[j]));
+      const double factor = factor_of(&now, step, measure, &impacts->speed[j]);
+      take_least(&impacts->factor[j], factor);
+      take_least(&impacts->factor[m->n_rollers + fast->pair->b], factor);
     }
-    least = trb_min(least, impacts->factor[j]);
   }
   if (d->work->n_hub > 0) {
     const trb_instant at = {.drive = &drive, .bodies = impacts->bodies};
-    least = trb_min(least, factor_of_hub(impacts, d, &at, step, measure));
+    look_at_hub(impacts, d, &at, step, measure);
   }
-  impacts->factor[m->n_rollers] = least;
 }

@@ -121,9 +121,21 @@ int trb_integrator_rates(trb_integrator *it, double time, const double *y, doubl
   return trb_integrator_finite(it, rates) ? 0 : 1;
 }
 
+/* Least factor of the bodies of all bearings that have the same entries: a carried ring is a part of the body that carries it. */
+static double factor_at(const trb_integrator *it, int first)
+{
+  double least = 1.0;
+  for (int k = 0; k < it->assembly->n; k++) {
+    const trb_system *system = &it->assembly->members[k];
+    for (int b = 0; b < system->n_bodies; b++)
+      if (system->bodies[b].size > 0 && system->bodies[b].first == first)
+        least = trb_min(least, it->members[k].impacts.factor[system->model->n_rollers + b]);
+  }
+  return least;
+}
+
 void trb_integrator_weights(const trb_integrator *it, const double *y, double *weights)
 {
-  double of_hub = 1.0;
   trb_block_kernels_of(it->members[0].dynamics->work->variant)->weigh(it->relative, it->scale, y, it->n, weights);
   for (int k = 0; k < it->assembly->n; k++) {
     const trb_system *system = &it->assembly->members[k];
@@ -132,7 +144,11 @@ void trb_integrator_weights(const trb_integrator *it, const double *y, double *w
     double           *own = weights + trb_state_roller(system, 0);
     for (int j = 0; j < n_rollers; j++)
       for (int i = 0; i < TRB_NR && factor[j] < 1.0; i++) own[j * TRB_NR + i] /= factor[j];
-    of_hub = trb_min(of_hub, factor[n_rollers]);
+    for (int b = 0; b < system->n_bodies; b++) {
+      const trb_body *body = &system->bodies[b];
+      if (body->size == 0 || body->carried) continue;
+      const double of_body = factor_at(it, body->first);
+      for (int i = body->first; i < body->first + body->size && of_body < 1.0; i++) weights[i] /= of_body;
+    }
   }
-  for (int i = it->assembly->members[0].layout.hub; i < it->n_main && of_hub < 1.0; i++) weights[i] /= of_hub;
 }

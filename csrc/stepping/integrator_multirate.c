@@ -254,6 +254,8 @@ static trb_status multirate_create(trb_integrator *it, trb_message *message)
   const size_t n = (size_t)it->n + TRB_NP;
   s->n_rollers = system->layout.n_rollers;
   s->n_quadratures = trb_n_quadratures(system);
+  for (int b = 0; b < system->n_bodies; b++)
+    if (system->bodies[b].size > 0) s->hub_body = b;
   s->stride = (size_t)s->n_rollers * TRB_NR + (size_t)width + TRB_NP;
   s->count.smallest_step = (double)INFINITY;
   s->count.last_order = 2.0;

@@ -203,7 +203,8 @@ static void weigh(const trb_integrator *it, const trb_team *team)
   double              *weight = s->weight;
   for (int k = 0; k < trb_team_size(team); k++) {
     const trb_mover *b = trb_team_mover(s, team, k);
-    const double     factor = team->with_hub ? it->members[0].impacts.factor[b - s->movers] : 1.0;
+    const int        at = k < team->n ? team->rollers[k] : s->n_rollers + s->hub_body;
+    const double     factor = team->with_hub ? it->members[0].impacts.factor[at] : 1.0;
     for (int i = 0; i < b->course.main; i++)
       *weight++ = 1.0 / ((it->relative[b->first + i] * fabs(b->course.now.z[0][i]) + it->scale[b->first + i]) * factor);
   }

@@ -220,7 +220,7 @@ static void test_set_state(const char *kind, double share)
   trb_simulation_free(s);
 }
 
-/* A factor makes the tolerances of one body smaller, those of a roller or those of all bodies behind the rollers, and of no other entry. */
+/* A factor makes the tolerances of one body smaller, those of a roller or those of the cage, and of no other entry. */
 static void test_weights(void)
 {
   const trb_settings settings = rig_settings();
@@ -229,14 +229,15 @@ static void test_weights(void)
   const int          rollers = m->n_rollers;
   if (!CHECK(create("bdf", "scalar", &settings, 0.0, start, &s) == TRB_OK)) return;
   trb_integrator *it = &s->integrator;
-  for (int i = 0; i <= rollers; i++) it->members[0].impacts.factor[i] = 1.0;
+  for (int i = 0; i < rollers + TRB_MOST_BODIES; i++) it->members[0].impacts.factor[i] = 1.0;
   trb_integrator_weights(it, start, usual);
   for (int body = 0; body <= rollers; body++) {
     const int from = trb_state_roller(built, body), to = body < rollers ? trb_state_roller(built, body + 1) : it->n_main;
-    it->members[0].impacts.factor[body] = 0.25;
+    double *const factor = &it->members[0].impacts.factor[body < rollers ? body : rollers + TRB_BODY_CAGE];
+    *factor = 0.25;
     trb_integrator_weights(it, start, now);
     for (int i = 0; i < it->n; i++) CHECK(now[i] == (i >= from && i < to ? 4.0 : 1.0) * usual[i]);
-    it->members[0].impacts.factor[body] = 1.0;
+    *factor = 1.0;
   }
   trb_simulation_free(s);
 }
