@@ -349,38 +349,6 @@ def text_of(report: common.Report) -> str:
     return "\n\n".join(tables)
 
 
-def draw(report: common.Report) -> Any:
-    """Cost of each effect, and the ratio where it is off."""
-    plt = common.pyplot()
-    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(14.0, 5.5), sharey=True, layout="constrained")
-    names = [row["effect"] for row in report.results]
-    places = np.arange(len(names))
-    left.barh(
-        places + 0.2, [row["us_all"] - row["us_off"] for row in report.results], 0.38, label="of all, when left out"
-    )
-    left.barh(places - 0.2, [row["us_on"] - row["us_none"] for row in report.results], 0.38, label="alone, when added")
-    left.set_yticks(places, names)
-    left.invert_yaxis()
-    left.set_xlabel(f"µs of a force evaluation (all: {report.summary['all']['us']:.1f} µs)")
-    left.set_title("cost of an effect")
-    left.axvline(0.0, color="0.3", lw=0.8)
-    left.legend(fontsize=8)
-    known = [(i, row["time_ratio_off"]) for i, row in enumerate(report.results) if row.get("time_ratio_off")]
-    middle.plot([value for _, value in known], [i for i, _ in known], "o")
-    middle.axvline(1.0, color="0.3", lw=0.8)
-    middle.set_xlim(0.9, max([1.1, *(value + 0.02 for _, value in known)]))
-    middle.set_xlabel("time when off / time of a core built without its code")
-    middle.set_title("an effect that is off")
-    values = [100.0 * (row["torque_change"] if row["torque_change"] is not None else np.nan) for row in report.results]
-    right.barh(places, values, 0.6, color="tab:green")
-    right.axvline(0.0, color="0.3", lw=0.8)
-    right.set_xlabel("what it adds to the torque (% of all)")
-    right.set_title("what it does to the shaft's torque")
-    for axes in (left, middle, right):
-        axes.grid(axis="x", alpha=0.3)
-    return figure
-
-
 def main(arguments: Sequence[str] | None = None) -> common.Report:
     parser = common.parser(__doc__)
     parser.add_argument(
@@ -395,8 +363,6 @@ def main(arguments: Sequence[str] | None = None) -> common.Report:
     report = run(SMOKE if options.smoke else QUICK if options.quick else FULL, options)
     report.readme = text_of(report)
     print(report.readme)
-    if not options.no_picture:
-        common.save_picture(draw(report), "effects")
     report.finish()
     return report
 

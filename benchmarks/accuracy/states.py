@@ -141,24 +141,6 @@ CASES: Final = {
         diameter_range=2e-6,
     ),
 }
-OF_FRONT: Final = {
-    "unloaded": CaseDefinition(
-        "radial load that leaves rollers unloaded, which ring between the races where they come into the load zone",
-        3000.0,
-        4930.0,
-        20_000.0,
-        Start.whirl(0.9),
-        2.0,
-        0.33,
-        False,
-        least_window=1e-3,
-        longest_window=1e-3,
-        reference="bdf",
-        timed=0.1,
-    ),
-}
-"""Further cases, of `benchmarks/front.py` alone."""
-ALL: Final = CASES | OF_FRONT
 N_STATES: Final = 5
 
 
@@ -190,7 +172,7 @@ class Case:
     @property
     def definition(self) -> CaseDefinition:
         """How its states came about."""
-        return ALL[self.name]
+        return CASES[self.name]
 
     @property
     def reference(self) -> Literal["erk", "bdf"]:
@@ -279,7 +261,7 @@ def make_file(names: Sequence[str] = (), path: Path = FILE) -> None:
     if path.exists():
         with np.load(path) as data:
             arrays = dict(data)
-    for name, definition in ALL.items():
+    for name, definition in CASES.items():
         if name not in names and (names or f"{name}_scene" in arrays):
             continue
         scene, states = scene_of(definition), make_states(definition)
@@ -309,7 +291,7 @@ def load_case(name: str, path: Path = FILE) -> Case:
         )
         return Case(
             name,
-            ALL[name].text,
+            CASES[name].text,
             Scene.from_dict(scene),
             states,
             tuple(map(float, data[f"{name}_window"])),
