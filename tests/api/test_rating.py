@@ -382,6 +382,7 @@ def test_the_sheet_is_a_table_and_plain_data() -> None:
         trb.rating(BEARING)
 
 
+@pytest.mark.usefixtures("drawn_only")
 def test_the_report_has_the_sheet(tmp_path: Path) -> None:
     result = trb.Simulation(SCENE).run(revolutions=0.5)
     page = trb.report(result, tmp_path / "report.html", pictures=["cage_locus"]).read_text(encoding="utf-8")
@@ -490,6 +491,7 @@ def test_the_life_of_a_run_whose_load_changes_is_that_of_the_whole_run(spike: tr
     assert "the window that was asked for" in asked.notes["life"]
 
 
+@pytest.mark.usefixtures("drawn_only")
 def test_the_file_and_the_report_say_the_same_life(
     spike: trb.Result, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -551,6 +553,7 @@ def test_the_axial_load_of_ribs_counts_by_the_makers_factors() -> None:
     assert trb.rating(trb.Scene(one_of_them, **loads)).e == pytest.approx(0.3)
 
 
+@pytest.mark.usefixtures("drawn_only")
 def test_a_life_that_leaves_an_axial_load_out_says_so(tmp_path: Path) -> None:
     scene = trb.Scene(
         trb.Bearing.from_catalogue(**NUP310), speed_rpm=2000.0, radial_load=10e3, axial_load=20e3, ring="follows"

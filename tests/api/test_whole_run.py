@@ -55,6 +55,7 @@ def test_a_ramp_from_rest_has_its_thinnest_film_at_its_start(ramp: trb.Result) -
     assert values["pocket_force_peak"] == ramp.peaks["pocket_force_peak"].max()
 
 
+@pytest.mark.usefixtures("drawn_only")
 def test_report_and_summary_have_the_same_numbers(spike: trb.Result, tmp_path: Path) -> None:
     text = trb.report(spike, tmp_path / "spike.html", pictures=[]).read_text(encoding="utf-8")
     values = spike.summary()

@@ -41,6 +41,7 @@ def with_scene(path: Path, change: Callable[[dict[str, Any]], None]) -> None:
 
 @pytest.mark.parametrize("checksum", [None, SHA])
 @pytest.mark.parametrize("kind", ["pipe", "device", "file"])
+@pytest.mark.usefixtures("drawn_only")
 def test_no_file_is_opened_whose_name_stands_in_a_result(
     good: bytes, tmp_path: Path, checksum: str | None, kind: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -95,6 +96,7 @@ def test_what_unpacks_to_gigabytes_is_refused_at_once(good: bytes, tmp_path: Pat
 
 
 @pytest.mark.parametrize("notes", [7, None, "text", [1, "a"]])
+@pytest.mark.usefixtures("drawn_only")
 def test_notes_of_another_kind_do_not_break_a_report(good: bytes, tmp_path: Path, notes: Any) -> None:
     path = tmp_path / "run.h5"
     path.write_bytes(good)

@@ -61,6 +61,7 @@ def test_a_run_of_few_records_is_reported_and_drawn(tmp_path: Path, monkeypatch:
 
 
 @pytest.mark.parametrize("group", ["peaks", "torque", "cage"])
+@pytest.mark.usefixtures("drawn_only")
 def test_a_run_of_one_group_is_reported(group: str, tmp_path: Path) -> None:
     result = trb.Simulation(paper_30310()).run(duration=2e-4, save_every=1e-5, save_groups=(group,))
     assert "Verdict" in trb.report(result, tmp_path / "a.html", pictures=[]).read_text(encoding="utf-8")

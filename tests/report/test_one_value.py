@@ -99,6 +99,7 @@ def test_rows_that_pictures_tell_are_of_one_stretch() -> None:
         assert len({row.of for row in TABLE.values() if name in row.pictures}) == 1, name
 
 
+@pytest.mark.usefixtures("drawn_only")
 def test_a_pair_has_a_verdict_and_a_total_and_is_compared(tmp_path: Path) -> None:
     pair = trb.load_assembly("pair_30310")
     runs = [

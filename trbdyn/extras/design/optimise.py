@@ -317,6 +317,8 @@ class Search:
         self.first = {band.path: self._given("change", band) for band in self.bands}
         self.unit = np.empty((0, len(self.bands)))
         self.short, self.long = (np.empty((0, len(self.want) + len(self.limits))) for _ in range(2))
+        self._values: Array | None = None  # until more is run
+        self._smooth: Array | None = None
         self.tables: list[dict[str, float]] = []
         self.parts: list[xarray.Dataset] = []
 
@@ -368,6 +370,7 @@ class Search:
         numbers = range(len(self.unit), len(self.unit) + len(unit))
         self.unit = np.vstack([self.unit, unit])
         tables, columns = self._judged(numbers, 1.0)
+        self._values = self._smooth = None
         self.tables += tables
         self.short = np.vstack([self.short, columns])
         self.long = np.vstack([self.long, np.full_like(columns, np.nan)])
@@ -375,6 +378,7 @@ class Search:
     def _confirm(self, numbers: Sequence[int]) -> None:
         if numbers:
             tables, columns = self._judged(numbers, self.confirm)
+            self._values = self._smooth = None
             self.long[numbers] = columns
             # a design whose longer run fails cannot be run
             self.short[numbers] += 0.0 * columns
@@ -429,6 +433,8 @@ class Search:
         The change is the lower end of the fit's band: a design counts as worse only where longer runs of designs near to it
         were worse.
         """
+        if self._values is not None:
+            return self._values
         known = np.isfinite(self.unit).all(axis=1)
         ran, seen = self.ran & known, self.confirmed & known
         values = self.short.copy()
@@ -436,15 +442,19 @@ class Search:
             short = Fits(self.unit[ran], self.short[ran], self.seed)
             change = Fits(self.unit[seen], self.long[seen] - short.predicted(self.unit[seen]), self.seed)
             values[ran] += change.predicted(self.unit[ran], 1.0)
-        return np.where(self.confirmed[:, None], self.long, values)
+        self._values = np.where(self.confirmed[:, None], self.long, values)
+        return self._values
 
     @property
     def smooth(self) -> Array:
         """The same, of designs that were not confirmed as all runs together tell."""
+        if self._smooth is not None:
+            return self._smooth
         values, fit = self.values, self.ran & np.isfinite(self.unit).all(axis=1)
         told = values.copy()
         told[fit] = Fits(self.unit[fit], values[fit], self.seed).predicted(self.unit[fit])
-        return np.where(self.confirmed[:, None], values, told)
+        self._smooth = np.where(self.confirmed[:, None], values, told)
+        return self._smooth
 
     def front(self, among: Flags) -> Flags:
         """Which of some designs keep the limits and are beaten in all aims by no other one of them."""
