@@ -25,20 +25,24 @@ static void sum(const double *restrict shapes, int n, const double *restrict amp
     add_times(shapes + TRB_SHAPE_ROOM, amplitude[i + 1], odd);
   }
   if (i < n) add_times(shapes, amplitude[i], even);
-  for (int k = 0; k < PARTS; k++) even[k] += odd[k];
-  memcpy(to, even, sizeof even);
+  for (int k = 0; k < PARTS; k++) {
+    even[k] += odd[k];
+    memcpy(to + k * TRB_WIDE, &even[k], sizeof even[k]);
+  }
 }
 
 static void push(const double *restrict shapes, int n, const double *restrict load, double *restrict force)
 {
   trb_wide all[PARTS];
-  memcpy(all, load, sizeof all);
+  for (int k = 0; k < PARTS; k++) memcpy(&all[k], load + k * TRB_WIDE, sizeof all[k]);
   for (int i = 0; i < n; i++, shapes += TRB_SHAPE_ROOM) {
-    trb_wide own[PARTS];
-    double   part[TRB_SHAPE_ROOM];
-    memcpy(own, shapes, sizeof own);
-    for (int k = 0; k < PARTS; k++) own[k] *= all[k];
-    memcpy(part, own, sizeof part);
+    double part[TRB_SHAPE_ROOM];
+    for (int k = 0; k < PARTS; k++) {
+      trb_wide own;
+      memcpy(&own, shapes + k * TRB_WIDE, sizeof own);
+      own *= all[k];
+      memcpy(part + k * TRB_WIDE, &own, sizeof own);
+    }
     force[i] += ((part[0] + part[1]) + (part[2] + part[3])) + (part[4] + part[5]);
   }
 }
