@@ -7,7 +7,8 @@ differ by 1 um unless `--scatter` gives another range, for `trb.cage_answer`, wi
 sizes in inches, two are cylindrical. `--others` takes eight scenes of other bearings, by which no bound of the rule was chosen.
 `--answers` takes the answers from a file of an earlier run. `--follow` runs each ten times as long as its answer took, from rest,
 or, where a direction was told, from the starts whose way it is: they are there when the mean of 20 turns of the cage is. Where
-the start decides both outer starts are followed for as long as was said. Temperatures and slip are judged by verdicts.py.
+the start decides both outer starts are followed for as long as was said. Temperatures and slip
+were judged once (README, Verdicts beside long runs).
 """
 
 from __future__ import annotations
