@@ -35,7 +35,7 @@ typedef struct trb_multirate {
   trb_mover          *movers; /* rollers, then the hub */
   double              hub_flow[TRB_COURSE_ROOM];
   int                 n_rollers, n_quadratures;
-  int                 hub_body;  /* number of the one body that the hub is */
+  int                 hub_body; /* number of the one body that the hub is */
   int                *together; /* rollers that step with the hub, ascending */
   int                 n_together;
   int                *joined; /* of them those that have no part in the Jacobian yet */

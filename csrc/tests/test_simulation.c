@@ -232,7 +232,7 @@ static void test_weights(void)
   for (int i = 0; i < rollers + TRB_MOST_BODIES; i++) it->members[0].impacts.factor[i] = 1.0;
   trb_integrator_weights(it, start, usual);
   for (int body = 0; body <= rollers; body++) {
-    const int from = trb_state_roller(built, body), to = body < rollers ? trb_state_roller(built, body + 1) : it->n_main;
+    const int     from = trb_state_roller(built, body), to = body < rollers ? trb_state_roller(built, body + 1) : it->n_main;
     double *const factor = &it->members[0].impacts.factor[body < rollers ? body : rollers + TRB_BODY_CAGE];
     *factor = 0.25;
     trb_integrator_weights(it, start, now);
