@@ -212,7 +212,8 @@ class _Checking:
         elif not self.repeating.has_states:
             what = f"the first {100.0 * covered:.2g} % of the run were repeated, {_times(len(samples[0].tight))}"
         else:
-            what = f"{len(samples)} pieces, {100.0 * covered:.2g} % of the run, were repeated, each from a state of the run"
+            count = "one piece was" if len(samples) == 1 else f"{len(samples)} pieces were"
+            what = f"{count} repeated from a state of the run, {100.0 * covered:.2g} % of it in all"
         older = "" if self.whole else " what the tolerances did before a piece began;"
         return (
             f"Measured at this run: {what}, with its own tolerances and with those of 'reference' or a tenth of them, in "
