@@ -288,6 +288,16 @@ def test_of_a_run_that_takes_too_many_steps_a_stretch_is_repeated(monkeypatch):
     assert float(said[2]) > 0.0
 
 
+@pytest.mark.usefixtures("probes")
+def test_what_was_right_before_is_not_taken_for_right_where_no_steps_are_left(monkeypatch):
+    """The first 8 ms are known to be right; then vibrations grow, and the steps of all checks are used up."""
+    monkeypatch.setattr("trbdyn.run.vibrations.STEPS_OF_SIMULATION", 3000)
+    sim = trb.Simulation(hardly_loaded(), accuracy="fast")
+    assert [sim.run(duration=4e-3).warnings for _ in range(2)] == [(), ()]
+    with pytest.warns(trb.RunWarning, match="could not be measured"):
+        sim.run(duration=4e-3)
+
+
 def test_the_damping_that_the_warning_names_makes_presets_agree():
     losses = []
     for accuracy in ("standard", "reference"):

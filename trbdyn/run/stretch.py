@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -91,7 +92,8 @@ class Stretch:
         ends = np.linspace(begin, len(times) - 1, PARTS + 1).astype(int)
         piece = Piece(0, self.begin, float(times[begin]), self.begin + self.length)
         parts = [
-            Sample(piece, [self._numbers(own[a : b + 1])], [self._numbers(fine[a : b + 1])]) for a, b in _pairwise(ends)
+            Sample(piece, [self._numbers(own[a : b + 1])], [self._numbers(fine[a : b + 1])])
+            for a, b in pairwise(ends.tolist())
         ]
         return self._measured(parts, 1, steps)
 
@@ -162,10 +164,6 @@ class Stretch:
     def _measured(self, samples: Sequence[Sample], pairs: int, steps: int) -> Measured:
         numbers = {name: judged(name, samples) for name in WORDS}
         return Measured(self.begin, self.begin + self.length, numbers, pairs, steps)
-
-
-def _pairwise(ends: NDArray[np.int_]) -> list[tuple[int, int]]:
-    return list(zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True))
 
 
 def _run(

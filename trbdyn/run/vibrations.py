@@ -118,8 +118,11 @@ class Vibrations:
             return None
         suspect = seen.suspect
         longer = time - self._whole.since > MUCH_LONGER * (seen.measured_until - self._whole.since)
-        if (longer or suspect.size > seen.measured_size) and self._measure(self._piece(suspect, time), time):
-            seen.measured_size, seen.measured_until = suspect.size, time
+        if longer or suspect.size > seen.measured_size:
+            if self._measure(self._piece(suspect, time), time):
+                seen.measured_size, seen.measured_until = suspect.size, time
+            elif seen.measured is not None and seen.measured.clear:
+                seen.measured = None  # what was right before may not be so any more
         if seen.measured is not None and seen.measured.clear:
             return None
         damped = self._damped(now)
@@ -143,8 +146,10 @@ class Vibrations:
         if not least < lost < LEFT_OPEN * self._sim.options.tolerances.rtol * kinetic or whole.state is None:
             return None
         length = min(time - whole.since, LENGTH)
-        if length < SHORTEST or not self._measure(self._stretch(whole.since, whole.state, length, GROWTH), time):
+        if length < SHORTEST:
             return None
+        if not self._measure(self._stretch(whole.since, whole.state, length, GROWTH), time):
+            seen.measured = None
         if seen.measured is not None and seen.measured.clear:
             return None
         return (

@@ -316,9 +316,8 @@ class CageMotion:
         f = orbit_over_play / self.orbit_over_play
         whirl = self.whirl_coherence**2
         moment = self.axis_coherence**2
-        ratio = (
-            whirl / moment - 1.0 if moment > 0.0 else math.inf
-        )  # square of the distance of the mean place over the orbit
+        # square of the distance of the mean place over the orbit
+        ratio = whirl / moment - 1.0 if moment > 0.0 else math.inf
         axis = math.sqrt(whirl / (1.0 + max(ratio, 0.0) / f**2)) if f > 0.0 else 0.0
         return _kind(orbit_over_play, 1.0 - f * (1.0 - self.own_side), axis)
 
