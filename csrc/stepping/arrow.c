@@ -71,7 +71,7 @@ trb_status trb_arrow_factors_create(int n_rollers, int hub_width, int variant, t
     f->borders = trb_memory_zeros(&f->memory, n, sizeof *f->borders);
     f->hub.schur = trb_memory_zeros(&f->memory, width * (size_t)room, sizeof *f->hub.schur);
     f->hub.inverse = trb_memory_zeros(&f->memory, width * (size_t)room, sizeof *f->hub.inverse);
-    f->hub.scratch = trb_memory_zeros(&f->memory, 2 * (size_t)room, sizeof *f->hub.scratch);
+    f->hub.scratch = trb_memory_zeros(&f->memory, 2 * (size_t)room + n * TRB_NP, sizeof *f->hub.scratch);
     f->hub.pivot = trb_memory_zeros(&f->memory, width, sizeof *f->hub.pivot);
     border = trb_memory_zeros(&f->memory, n * (solved + from), sizeof *border);
   }

@@ -6,13 +6,8 @@
 #include "base/variant.h"
 #include "stepping/blocks.h"
 #include "stepping/constants.h"
-
-static inline void swap(double *a, double *b)
-{
-  const double keep = *a;
-  *a = *b;
-  *b = keep;
-}
+#include "stepping/ring_kernels.h"
+#include "stepping/wide_hub.h"
 
 /* Masks of 0 and 1 by which whole rows are changed with the same arithmetic for each entry. Writing single entries instead and reading
  * the whole row right after would cause a store-forwarding stall. */
@@ -60,17 +55,6 @@ static inline void take(double (*restrict a)[TRB_NP], int n, int c)
     for (int k = 0; k < TRB_NP; k++) a[i][k] = keep[k] * a[i][k] - m * row[k];
   }
   for (int k = 0; k < TRB_NP; k++) a[c][k] = row[k];
-}
-
-static int all_finite(const double *x, int n)
-{
-  double    check[TRB_SUMS_SIDE_BY_SIDE] = {0}, sum = 0.0;
-  const int whole = n - n % TRB_SUMS_SIDE_BY_SIDE;
-  for (int i = 0; i < whole; i += TRB_SUMS_SIDE_BY_SIDE)
-    for (int k = 0; k < TRB_SUMS_SIDE_BY_SIDE; k++) check[k] += 0.0 * x[i + k];
-  for (int i = whole; i < n; i++) check[i - whole] += 0.0 * x[i];
-  for (int k = 0; k < TRB_SUMS_SIDE_BY_SIDE; k++) sum += check[k];
-  return sum == 0.0;
 }
 
 /* Inverse in place by Gauss-Jordan elimination without exchanges; 0: a multiplier was too large, or the result is not finite. */
@@ -166,113 +150,21 @@ static inline void add_product(const double (*columns)[TRB_NP], int n, const dou
   for (int i = 0; i < TRB_NP; i++) to[i] = sum[i];
 }
 
-/* A part of a column as numbers side by side: where the number of columns is not known to compilers they would take the loop over the columns
- * instead, and shuffle. */
-#if TRB_WIDE < 4
-enum { QUARTET = TRB_WIDE };
-#else
-enum { QUARTET = 4 };
-#endif
-enum { QUARTETS = TRB_NP / QUARTET };
-typedef double quartet __attribute__((vector_size(QUARTET * sizeof(double))));
-typedef struct column_sum {
-  quartet part[QUARTETS];
-} column_sum;
-
-/* One vector at a time: GCC copies several together by way of the memory, in halves, for which the next read of a whole one has to wait. */
-static inline quartet load(const double *from)
-{
-  quartet v;
-  memcpy(&v, from, sizeof v);
-  return v;
-}
-
-static inline void store(quartet v, double *to) { memcpy(to, &v, sizeof v); }
-
-_Static_assert(TRB_NP % QUARTET == 0, "a part of a column is whole vectors");
-
-static inline void add_column(const double *column, double factor, column_sum *sum)
-{
-  for (int k = 0; k < QUARTETS; k++) sum->part[k] += factor * load(column + k * QUARTET);
-}
-
-/* The same for a part of the columns of a hub, which are `room` apart. */
-static inline void add_part(const double *restrict columns, int room, int n, const double *restrict x, double scale, double *restrict to)
-{
-  column_sum even, odd = {0}; /* one sum alone would wait for each of its additions */
-  int        c = 0;
-  for (int k = 0; k < QUARTETS; k++) even.part[k] = load(to + k * QUARTET);
-  for (; c + 2 <= n; c += 2, columns += 2 * room) {
-    add_column(columns, scale * x[c], &even);
-    add_column(columns + room, scale * x[c + 1], &odd);
-  }
-  if (c < n) add_column(columns, scale * x[c], &even);
-  for (int k = 0; k < QUARTETS; k++) store(even.part[k] + odd.part[k], to + k * QUARTET);
-}
-
-/* Entries of a part, which may end beyond those of the hub. */
-static inline int part_size(int width, int part) { return width - part * TRB_NP < TRB_NP ? width - part * TRB_NP : TRB_NP; }
-
-/* Parts of a hub: for (each part that some bits have). */
-#define EACH_PART(part, bits) \
-  for (int part = 0; (bits) >> part != 0U; part++) \
-    if ((bits) >> part & 1U)
-
 /* Columns of a hub of one rigid body. */
 typedef const double (*one_body_columns)[TRB_HUB_ONE_BODY];
 
 static void border(const trb_arrow_border *b, double gamma, const trb_arrow_factor_block *own, trb_arrow_factor_border *g,
                    const trb_hub_factor *hub)
 {
-  const int     width = hub->width, room = hub->room;
-  double *const schur = hub->schur;
   g->parts = b->parts;
-  if (width == TRB_HUB_ONE_BODY) {
-    for (int i = 0; i < TRB_NR * TRB_HUB_ONE_BODY; i++) g->from[i] = -gamma * b->from[i];
-    for (int c = 0; c < TRB_HUB_ONE_BODY; c++) set_product(own->inverse, TRB_NR, b->to_hub + c * TRB_NR, -gamma, g->solved + c * TRB_NP);
-    for (int c = 0; c < TRB_HUB_ONE_BODY; c++)
-      add_product((one_body_columns)g->from, TRB_NR, g->solved + c * TRB_NP, -1.0, schur + c * TRB_HUB_ONE_BODY);
+  if (hub->width != TRB_HUB_ONE_BODY) {
+    border_wide(b, gamma, own, g, hub);
     return;
   }
-  EACH_PART(part, b->parts)
-  for (int c = 0; c < TRB_NR; c++)
-    for (int i = part * TRB_NP; i < (part + 1) * TRB_NP; i++) g->from[c * room + i] = -gamma * b->from[c * room + i];
-  EACH_PART(part, b->parts)
-  for (int c = part * TRB_NP; c < part * TRB_NP + part_size(width, part); c++) {
-    set_product(own->inverse, TRB_NR, b->to_hub + c * TRB_NR, -gamma, g->solved + c * TRB_NP);
-    EACH_PART(row, b->parts)
-    add_part(g->from + row * TRB_NP, room, TRB_NR, g->solved + c * TRB_NP, -1.0, schur + c * room + row * TRB_NP);
-  }
-}
-
-/* Inverse in place by Gauss-Jordan elimination with exchanges of columns, as above, of a hub of any other width. */
-static int invert_wide(int n, int room, double *restrict a, double *restrict row, int *pivot)
-{
-  if (!all_finite(a, n * room)) return 0;
-  for (int c = 0; c < n; c++) {
-    double *const at = a + c * room;
-    int           best = c;
-    for (int k = c + 1; k < n; k++)
-      if (fabs(at[k]) > fabs(at[best])) best = k;
-    if (fabs(at[c]) >= trb_diagonal_share * fabs(at[best])) best = c;
-    if (!(fabs(at[best]) > 0.0)) return 0;
-    pivot[c] = best;
-    for (int i = 0; best != c && i < n; i++) swap(&a[i * room + c], &a[i * room + best]);
-    const double per = 1.0 / at[c];
-    for (int k = 0; k < room; k++) row[k] = per * at[k];
-    row[c] = per;
-    for (int i = 0; i < n; i++) {
-      double *const other = a + i * room;
-      const double  m = other[c];
-      if (i == c) continue;
-      for (int k = 0; k < room; k += QUARTET) store(load(other + k) + -m * load(row + k), other + k);
-      other[c] = -m * per;
-    }
-    memcpy(at, row, (size_t)room * sizeof *at);
-  }
-  for (int c = n - 1; c >= 0; c--)
-    for (int k = 0; pivot[c] != c && k < room; k++) swap(&a[c * room + k], &a[pivot[c] * room + k]);
-  return all_finite(a, n * room);
+  for (int i = 0; i < TRB_NR * TRB_HUB_ONE_BODY; i++) g->from[i] = -gamma * b->from[i];
+  for (int c = 0; c < TRB_HUB_ONE_BODY; c++) set_product(own->inverse, TRB_NR, b->to_hub + c * TRB_NR, -gamma, g->solved + c * TRB_NP);
+  for (int c = 0; c < TRB_HUB_ONE_BODY; c++)
+    add_product((one_body_columns)g->from, TRB_NR, g->solved + c * TRB_NP, -1.0, hub->schur + c * TRB_HUB_ONE_BODY);
 }
 
 static int invert_one_body(const double (*schur)[TRB_NP], double (*inverse)[TRB_NP])
@@ -295,8 +187,6 @@ static inline void solve_roller(const trb_arrow_factor_block *own, double *z)
   z[TRB_NR] = covered;
 }
 
-static inline int chosen_one(const int *chosen, int k) { return chosen == NULL ? k : chosen[k]; }
-
 static void solve_one_body(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, const int *chosen, int n,
                            one_body_columns inverse, double *restrict x)
 {
@@ -317,30 +207,6 @@ static void solve_one_body(const trb_arrow_factor_block *own, const trb_arrow_fa
   }
 }
 
-/* The same for any width. right: of the hub's equations; found: its solution. */
-static void solve_wide(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, const int *chosen, int n,
-                       const trb_hub_factor *hub, double *restrict x)
-{
-  double *const y = x + n * TRB_NR, *const right = hub->scratch, *const found = right + hub->room;
-  const int width = hub->width, room = hub->room;
-  memset(right, 0, 2 * (size_t)room * sizeof *right);
-  memcpy(right, y, (size_t)width * sizeof *right);
-  for (int k = 0; k < n; k++) {
-    const int j = chosen_one(chosen, k);
-    solve_roller(&own[j], x + k * TRB_NR);
-    EACH_PART(part, border[j].parts)
-    add_part(border[j].from + part * TRB_NP, room, TRB_NR, x + k * TRB_NR, -1.0, right + part * TRB_NP);
-  }
-  for (int part = 0; part < room; part += TRB_NP) add_part(hub->inverse + part, room, width, right, 1.0, found + part);
-  memcpy(y, found, (size_t)width * sizeof *y);
-  for (int k = 0; k < n; k++) {
-    const int j = chosen_one(chosen, k);
-    EACH_PART(part, border[j].parts)
-    add_product((one_body_columns)(border[j].solved + part * TRB_NP * TRB_NP), part_size(width, part), found + part * TRB_NP, -1.0,
-                x + k * TRB_NR);
-  }
-}
-
 static void solve(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, const int *chosen, int n,
                   const trb_hub_factor *hub, double *x)
 {
@@ -348,7 +214,7 @@ static void solve(const trb_arrow_factor_block *own, const trb_arrow_factor_bord
   else solve_wide(own, border, chosen, n, hub, x);
 }
 
-static void add(const double *columns, int stride, int n, const double *x, double *to) { add_part(columns, stride, n, x, 1.0, to); }
+static void add(const double *columns, int stride, int n, const double *x, double *to) { use_part(ADD, columns, stride, n, x, to); }
 
 static double step_from(const double *restrict origin, const double *restrict per, const double *restrict y, double turn,
                         double *restrict step)
@@ -373,39 +239,6 @@ static void follow(const double *restrict value, const double (*restrict slope)[
   memcpy(flow, sum, sizeof sum);
 }
 
-enum { FLOW_PARTS = TRB_TANGENT_OUT / TRB_WIDE, REACTION_PARTS = TRB_RING_OUT / TRB_WIDE };
-_Static_assert(TRB_TANGENT_OUT % TRB_WIDE == 0 && TRB_RING_OUT % TRB_WIDE == 0, "flows and reactions are whole vectors");
-
-static inline trb_wide load_wide(const double *from)
-{
-  trb_wide v;
-  memcpy(&v, from, sizeof v);
-  return v;
-}
-
-static inline void add_wide(const double *column, double factor, int n, trb_wide *sum)
-{
-  for (int k = 0; k < n; k++) sum[k] += factor * load_wide(column + k * TRB_WIDE);
-}
-
-static void follow_ring(const trb_ring_slopes *restrict slopes, const double *restrict value, const double *restrict step,
-                        const double *restrict of_ring, const double *restrict least, double *restrict flow, double *restrict reaction)
-{
-  trb_wide sum[FLOW_PARTS], even[REACTION_PARTS], odd[REACTION_PARTS] = {{0}};
-  double   changed[TRB_TANGENT_OUT];
-  for (int k = 0; k < FLOW_PARTS; k++) sum[k] = load_wide(flow + k * TRB_WIDE);
-  for (int c = 0; c < TRB_RING_IN; c++) add_wide(slopes->flow[c], of_ring[c], FLOW_PARTS, sum);
-  for (int k = 0; k < REACTION_PARTS; k++) even[k] = load_wide(value + k * TRB_WIDE);
-  for (int c = 0; c < TRB_TANGENT_IN; c++) add_wide(slopes->reaction[c], step[c], REACTION_PARTS, c % 2 == 0 ? even : odd);
-  for (int c = 0; c < TRB_RING_IN; c++) add_wide(slopes->reaction[TRB_TANGENT_IN + c], of_ring[c], REACTION_PARTS, c % 2 == 0 ? even : odd);
-  for (int k = 0; k < FLOW_PARTS; k++) memcpy(changed + k * TRB_WIDE, &sum[k], sizeof sum[k]);
-  for (int i = 0; i < TRB_TANGENT_OUT; i++) flow[i] = trb_max(changed[i], least[i]);
-  for (int k = 0; k < REACTION_PARTS; k++) {
-    even[k] += odd[k];
-    memcpy(reaction + k * TRB_WIDE, &even[k], sizeof even[k]);
-  }
-}
-
 static void weigh(const double *restrict relative, const double *restrict scale, const double *restrict y, int n, double *restrict weights)
 {
   for (int i = 0; i < n; i++) weights[i] = 1.0 / (relative[i] * fabs(y[i]) + scale[i]);
@@ -419,5 +252,6 @@ const trb_block_kernels TRB_JOIN(trb_block_kernels_, TRB_KERNEL_VARIANT) = {.fac
                                                                             .step_from = step_from,
                                                                             .follow = follow,
                                                                             .follow_ring = follow_ring,
+                                                                            .border_ring = border_ring,
                                                                             .weigh = weigh,
                                                                             .finite = all_finite};

@@ -39,7 +39,7 @@ typedef struct trb_arrow_factor_block {
 
 typedef struct trb_arrow_factor_border {
   double  *solved; /* [width][TRB_NP]: inverse to_hub */
-  double  *from;   /* [TRB_NR][room]: border of the hub's rows */
+  double  *from;   /* [room / TRB_NP][TRB_NR][TRB_NP]: border of the hub's rows, part by part */
   unsigned parts;
 } trb_arrow_factor_border;
 
@@ -48,7 +48,7 @@ typedef struct trb_hub_factor {
   int     width, room;
   double *schur;   /* [width][room], column by column; the kernels may use its memory */
   double *inverse; /* of it, likewise */
-  double *scratch; /* 2 room */
+  double *scratch; /* 2 room, and TRB_NP for each roller */
   int    *pivot;   /* width */
 } trb_hub_factor;
 
@@ -76,6 +76,11 @@ typedef struct trb_block_kernels {
    * step: of the roller's inputs; of_ring: of the ring's. */
   void (*follow_ring)(const trb_ring_slopes *slopes, const double *value, const double *step, const double *of_ring, const double *least,
                       double *flow, double *reaction);
+  /* Adds to the borders of a roller what a ring with n <= TRB_NP coordinates does. response: of the ring's rates to each entry of a wrench; with: slopes of
+   * the ring's inputs with each coordinate. from: the roller's columns of the hub's rows, `room` apart, at the ring's first one; to_hub: columns of
+   * the ring's coordinates. To reactions, one for each coordinate, is added what moves the ring against the roller. */
+  void (*border_ring)(const trb_ring_slopes *slopes, const double (*response)[TRB_NP], const double (*with)[TRB_RING_IN], int n, int room,
+                      double *from, double *to_hub, double (*reactions)[TRB_RING_OUT]);
   /* Error weights 1/(relative |y| + scale). */
   void (*weigh)(const double *relative, const double *scale, const double *y, int n, double *weights);
   /* Whether all entries are finite. */

@@ -10,8 +10,11 @@
 trb_status trb_jacobian_create(const trb_system *system, const trb_motion *motion, const char *variant, trb_jacobian **jacobian,
                                trb_message *message)
 {
-  trb_jacobian *j = calloc(1, sizeof *j);
   *jacobian = NULL;
+  for (int k = 0; k < system->n_moving; k++)
+    if (system->bodies[system->moving[k]].size > TRB_NP)
+      return trb_fail(message, TRB_ERR_INPUT, "body %s: a ring has at most %d coordinates", system->bodies[system->moving[k]].name, TRB_NP);
+  trb_jacobian *j = calloc(1, sizeof *j);
   if (j == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the Jacobian");
   trb_status status = trb_dynamics_create(system, motion, variant, &j->d, message);
   if (status == TRB_OK) {
@@ -21,6 +24,8 @@ trb_status trb_jacobian_create(const trb_system *system, const trb_motion *motio
     j->changes = trb_memory_zeros(&j->memory, width, sizeof *j->changes);
     j->response = trb_memory_zeros(&j->memory, 6 * width, sizeof *j->response);
     j->with = trb_memory_zeros(&j->memory, width, sizeof *j->with);
+    j->ring_response = trb_memory_zeros(&j->memory, (size_t)system->n_moving, sizeof *j->ring_response);
+    j->ring_reactions = trb_memory_zeros(&j->memory, (size_t)system->n_moving, sizeof *j->ring_reactions);
     trb_law_slopes_create(system->model, &j->memory, j->d->work);
     j->renewed = trb_memory_zeros(&j->memory, (size_t)system->model->n_rollers, sizeof *j->renewed);
     for (int b = 0; b < system->n_bodies; b++)
@@ -91,14 +96,15 @@ static void add_fast(trb_jacobian *jac, int j, const trb_coupling *k, int other,
   if (k->slopes.modal != NULL) trb_modal_add(jac->modal[other], d, j, k, first, arrow, jac->changes);
 }
 
-/* Rates of the whole hub at the poses kept. Loads of the fast pairs are those of the bodies; that of body `moved` changes with its
- * coordinate at, which was moved by h. Pairs without a roller are evaluated. moved: -1 if none was. */
+/* Rates of the hub at the poses kept. Loads of the fast pairs are those of the bodies; that of body `moved` changes with its coordinate at, which was
+ * moved by h; -1: none was. Pairs without a roller are evaluated; where there are none, only the rates of that body are written. */
 static void hub_rates(trb_jacobian *jac, const double *y, int moved, int at, double h, double *rates)
 {
   trb_dynamics *d = jac->d;
   if (d->work->n_hub > 0) trb_dynamics_hub(d, NULL);
   for (int b = 0; b < d->system->n_bodies; b++) {
     trb_wrench load = d->on_body[b];
+    if (d->work->n_hub == 0 && b != moved) continue;
     if (b == moved) load = (trb_wrench){trb_axpy(load.force, h, jac->changes[at].force), trb_axpy(load.moment, h, jac->changes[at].moment)};
     if (d->work->n_hub > 0) trb_add_wrench(&load, &d->hub.on[b]);
     body_rates(d, b, y, &load, rates);
@@ -143,17 +149,21 @@ static void modal_columns(trb_jacobian *jac, int b, const double *y, const doubl
   }
 }
 
-/* Adds to the block of the hub, by differences of its rates but for modes. Those of bodies that other systems have are zero here. */
+/* Adds to the block of the hub, by differences of its rates but for modes. A body moves the rates of others by pairs without a roller alone, and never
+ * those of bodies that other systems have. */
 static void hub_block(trb_jacobian *jac, const double *y, const double *still, trb_arrow *arrow)
 {
   trb_dynamics *d = jac->d;
   const int     hub = trb_state_hub(d->system);
+  const int     alone = d->work->n_hub == 0;
   double       *rates = jac->rates, *base = rates + arrow->width;
-  hub_rates(jac, y, -1, 0, 0.0, base);
+  if (!alone) hub_rates(jac, y, -1, 0, 0.0, base);
   for (int b = 0; b < d->system->n_bodies; b++) {
     const trb_body *body = &d->system->bodies[b];
     double         *own = jac->moved + body->first;
     if (body->size == 0) continue;
+    const int from = alone ? body->first - hub : 0, to = alone ? from + body->size : arrow->width;
+    if (alone) hub_rates(jac, y, b, from, 0.0, base);
     if (body->modes != NULL) modal_columns(jac, b, y, still, arrow);
     for (int c = 0; c < trb_rigid_coordinates(body); c++) {
       const int    at = body->first - hub + c;
@@ -161,7 +171,7 @@ static void hub_block(trb_jacobian *jac, const double *y, const double *still, t
       own[c] = was + h;
       trb_dynamics_pose_body(d, b, own);
       hub_rates(jac, jac->moved, b, at, h, rates);
-      for (int i = 0; i < arrow->width; i++) arrow->hub[at * arrow->room + i] += per * (rates[i] - base[i]);
+      for (int i = from; i < to; i++) arrow->hub[at * arrow->room + i] += per * (rates[i] - base[i]);
       own[c] = was;
     }
     trb_dynamics_pose_body(d, b, own);
@@ -193,6 +203,9 @@ static void prepare_rings(trb_jacobian *jac, const double *y, const double *stil
     const int       first = body->first - hub;
     double         *own = jac->moved + body->first;
     respond(jac, b, y, still);
+    for (int c = 0; c < TRB_WRENCH; c++)
+      memcpy(jac->ring_response[k][c], jac->response + 6 * first + c * body->size, (size_t)body->size * sizeof *jac->response);
+    memset(jac->ring_reactions[k], 0, sizeof jac->ring_reactions[k]);
     for (int c = 0; c < body->size; c++) {
       const double  was = own[c], h = trb_difference[body->coordinates[c].tolerance];
       trb_ring_pose moved;
@@ -205,7 +218,7 @@ static void prepare_rings(trb_jacobian *jac, const double *y, const double *stil
   }
 }
 
-/* Borders of a roller to the rings with coordinates, and its part of the slopes of their loads. */
+/* Borders of a roller to the rings with coordinates, and its part of the slopes of their loads with these. */
 static void fill_rings(trb_jacobian *jac, int j, trb_arrow *arrow)
 {
   trb_dynamics            *d = jac->d;
@@ -220,16 +233,20 @@ static void fill_rings(trb_jacobian *jac, int j, trb_arrow *arrow)
     const trb_wrench        now = trb_ring_wrench(tangent->value);
     trb_add_wrench(&d->on_body[b], &now);
     trb_arrow_add_parts(arrow, leaf_of(d, j), parts_of(d, b));
-    for (int c = 0; c < TRB_NR; c++) add_response(jac, body, body->size, slopes->reaction[c], border->from + c * arrow->room + first);
+    kernels->border_ring(slopes, (const double (*)[TRB_NP])jac->ring_response[k], (const double (*)[TRB_RING_IN])(jac->with + first),
+                         body->size, arrow->room, border->from + first, border->to_hub + first * TRB_NR, jac->ring_reactions[k]);
+  }
+}
+
+/* Slopes of the loads of rings with their own coordinates, which all rollers have given. */
+static void react(trb_jacobian *jac)
+{
+  const trb_system *system = jac->d->system;
+  for (int k = 0; k < system->n_moving; k++) {
+    const trb_body *body = &system->bodies[system->moving[k]];
     for (int c = 0; c < body->size; c++) {
-      double  change[TRB_NP] = {0}, reaction[TRB_RING_OUT] = {0};
-      double *to = border->to_hub + (first + c) * TRB_NR;
-      kernels->add(slopes->flow[0], TRB_FLOW_ROOM, TRB_RING_IN, jac->with[first + c], change);
-      for (int i = 0; i < TRB_NR; i++) to[i] += change[i];
-      for (int q = 0; q < TRB_RING_IN; q++)
-        for (int i = 0; i < TRB_RING_OUT; i++) reaction[i] += jac->with[first + c][q] * slopes->reaction[TRB_TANGENT_IN + q][i];
-      const trb_wrench w = trb_ring_wrench(reaction);
-      trb_add_wrench(&jac->changes[first + c], &w);
+      const trb_wrench w = trb_ring_wrench(jac->ring_reactions[k][c]);
+      trb_add_wrench(&jac->changes[body->first - trb_state_hub(system) + c], &w);
     }
   }
 }
@@ -315,6 +332,7 @@ void trb_jacobian_fill_of(trb_jacobian *jac, double time, const double *y, int f
     fill_fast(jac, chosen[k], y, still, arrow);
     fill_rings(jac, chosen[k], arrow);
   }
+  react(jac);
   hub_block(jac, y, still, arrow);
   for (int b = 0; b < d->system->n_bodies; b++)
     if (jac->modal[b] != NULL)

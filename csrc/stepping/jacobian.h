@@ -17,7 +17,9 @@ typedef struct trb_jacobian {
   trb_wrench   *changes;  /* scratch: slopes of the loads of the hub's bodies with each of their own coordinates */
   double *
       response; /* scratch, of rings with coordinates, of bodies that deform, and of those of the hub where a roller is added: [force or moment in R][rate]: what a unit of it does */
-  double (*with)[TRB_RING_IN];       /* scratch, of rings with coordinates: slopes of their inputs with each coordinate */
+  double (*with)[TRB_RING_IN]; /* scratch, of rings with coordinates: slopes of their inputs with each coordinate */
+  /* scratch, of each ring with coordinates: the response again, and what moves the ring with each of its coordinates */
+  double (*ring_response)[TRB_WRENCH][TRB_NP], (*ring_reactions)[TRB_NP][TRB_RING_OUT];
   trb_modal *modal[TRB_MOST_BODIES]; /* of bodies that deform */
   int       *renewed;                /* rollers whose slopes are taken again at the next fill, ascending */
   int        n_renewed;

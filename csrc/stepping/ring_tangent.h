@@ -7,7 +7,7 @@
 #include "motion/dynamics.h"
 
 /* Of the ring: its centre, its axis (x, y), its velocity, its angular velocity; of the reaction: force, moment, padding. */
-enum { TRB_RING_IN = 11, TRB_RING_OUT = 8, TRB_RING_OF_ROLLER = 12, TRB_RING_ALL = TRB_RING_OF_ROLLER + TRB_RING_IN };
+enum { TRB_RING_IN = 11, TRB_RING_OUT = 8, TRB_WRENCH = 6, TRB_RING_OF_ROLLER = 12, TRB_RING_ALL = TRB_RING_OF_ROLLER + TRB_RING_IN };
 
 typedef struct trb_ring_slopes {
   double flow[TRB_RING_IN][TRB_FLOW_ROOM];     /* of the roller's flow with the ring's inputs, column by column */
