@@ -238,6 +238,9 @@ def image(draw: Callable[[], Axes | Figure], dpi: int = 110) -> str:
     paper = io.BytesIO()
     try:
         with styled():
+            if (engine := figure.get_layout_engine()) is not None:  # which savefig would do by drawing once more
+                engine.execute(figure)
+                figure.set_layout_engine("none")
             figure.savefig(paper, format="png", dpi=dpi)
     finally:
         plt.close(figure)
