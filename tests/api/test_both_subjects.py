@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from shared import assert_same_fields
 
 import trbdyn as trb
 from trbdyn.cli import main
@@ -206,8 +207,7 @@ def test_a_run_that_was_cut_off_goes_on(name: str, tmp_path: Path, monkeypatch: 
     resumed: Any = trb.resume(path)
     assert resumed.success
     for one, other in zip(whole.parts, resumed.parts, strict=True):
-        for field in one.fields:
-            assert np.array_equal(one[field.name], other[field.name], equal_nan=True), field.name
+        assert_same_fields(one, other)
     again: Any = trb.resume(path)
     assert np.array_equal(again.time, whole.time)
     simulation(name).run(duration=1e-4, output=path, overwrite=True)
@@ -381,6 +381,7 @@ def test_a_plan(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
 
 
 @pytest.mark.usefixtures("workers")
+@pytest.mark.parametrize("name", [pytest.param("scene", marks=pytest.mark.slow), "pair"])
 def test_a_study_over_workers(name: str, tmp_path: Path) -> None:
     speed = "scene.speed_rpm" if name == "scene" else "assembly.speed_rpm"
     warm = f"{PREFIX[name]}lubricant.temperature_c"

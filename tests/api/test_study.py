@@ -45,7 +45,8 @@ def records(folder: Path) -> dict[str, dict[str, np.ndarray]]:
     found = {}
     for path in sorted(folder.glob("*.h5")):
         result = trb.load(path)
-        found[path.name] = {field.name: result[field.name] for field in result.fields} | {"end": result.final_state}
+        with result._source.held_open():
+            found[path.name] = {field.name: result[field.name] for field in result.fields} | {"end": result.final_state}
     return found
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from shared import assert_same_fields
 
 import trbdyn as trb
 from trbdyn.errors import FileError
@@ -78,8 +79,7 @@ def test_a_pair_in_one_housing_goes_on_to_the_same_bits(tmp_path: Path, monkeypa
     for name in whole:
         one, other = whole[name], resumed[name]
         assert len(one) == len(other) == 51
-        for field in one.fields:
-            assert np.array_equal(one[field.name], other[field.name], equal_nan=True), field.name
+        assert_same_fields(one, other)
         assert one.summary()["steps"] == other.summary()["steps"]
         assert one.summary()["pocket_force_peak"] == other.summary()["pocket_force_peak"]
     again = trb.resume(path)

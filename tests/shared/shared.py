@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -47,6 +48,16 @@ def _sum(result: trb.Result, prefix: str) -> NDArray[np.float64]:
     """Sum of the fields of a prefix, from the start of the run on."""
     values = [np.asarray(result[field.name]) for field in result.fields if field.name.startswith(prefix)]
     return np.sum([one - one[0] for one in values], axis=0)
+
+
+def assert_same_fields(one: trb.Result, other: Any) -> None:
+    """Records of a bearing and those of another result, or of a dictionary, to the last bit; files are opened once for all."""
+    with ExitStack() as files:
+        for part in (one, other):
+            if isinstance(part, trb.Result):
+                files.enter_context(part._source.held_open())
+        for name in other if isinstance(other, dict) else [field.name for field in other.fields]:
+            np.testing.assert_array_equal(one[name], other[name], err_msg=name)
 
 
 class Cut(Exception):
