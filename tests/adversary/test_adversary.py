@@ -73,7 +73,9 @@ def test_found_failures_stay_mended(path):
         assert any(found["says"] in text for text in verdict.run.warnings), verdict.run.warnings
 
 
-@pytest.mark.parametrize(("kind", "seed"), [("cylindrical", 97000007), ("usual", 97000013)])
+@pytest.mark.parametrize(
+    ("kind", "seed"), [pytest.param("cylindrical", 97000007, marks=pytest.mark.slow), ("usual", 97000013)]
+)
 def test_a_difference_by_chance_gives_no_warning(kind, seed):
     """A piece of 20 ms shows a difference in these right runs by CVODE, a longer one shows that there is none."""
     table = ORDINARY | draw(kind, seed)

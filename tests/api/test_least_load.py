@@ -70,7 +70,9 @@ def found() -> Any:
     """Of runs of 4 turns alone."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(least_load, "TURNS", (4.0,))
-        return trb.least_load(scene(oil_fill=0.1), [6000.0], [(0.0, 100.0), (0.0, 2000.0)], temperatures=[30.0])
+        return trb.least_load(
+            scene(oil_fill=0.1, n_slices=4), [6000.0], [(0.0, 100.0), (0.0, 2000.0)], temperatures=[30.0]
+        )
 
 
 def test_a_light_bearing_skids_and_a_loaded_one_rolls(found: Any) -> None:

@@ -86,8 +86,7 @@ def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_a_search_finds_a_better_design_and_goes_on_in_its_folder(kept: Path) -> None:
     tolerances = {RADIUS: (-1.0, 1.0)}
-    limits = {"film_parameter_inner": (0.01, None)}
-    how: dict[str, Any] = {"limits": limits, "tolerances": tolerances, "draws": 2, "options": OPTIONS, "folder": kept}
+    how: dict[str, Any] = {"tolerances": tolerances, "draws": 2, "options": OPTIONS, "folder": kept}
     how["confirm"] = 3.0
     short = trb.optimise(SCENE, CHANGE, TORQUE, designs=10, **how)
     files = {path.name: path.stat().st_mtime_ns for path in kept.glob("*.h5")}

@@ -16,6 +16,8 @@ from trbdyn.extras.heat.paths import PARTS
 SEAT: dict[str, Any] = {"bore": 0.050, "outside": 0.110, "width": 0.02925, "shaft": "m6", "housing": "P7"}
 ALUMINIUM = trb.Mounting(**SEAT, housing_material=trb.Material.aluminium())
 CYLINDER = trb.Mounting(bore=0.050, outside=0.090, width=0.020, shaft="k5", housing="H7")
+EFFECTS = trb.Effects.standard().replace(n_slices=4)
+NJ210 = trb.cases.scene_nj210(effects=EFFECTS)
 
 
 def pair(arrangement: str = "face to face", **fields: Any) -> trb.Assembly:
@@ -27,7 +29,7 @@ def pair(arrangement: str = "face to face", **fields: Any) -> trb.Assembly:
         spread=0.088 if arrangement == "face to face" else 0.132,
         end_play=-23e-6,
         shaft=shaft,
-        **{"speed_rpm": 1500.0, "lubricant": "vg68", "loads": [gear], **fields},
+        **{"speed_rpm": 1500.0, "lubricant": "vg68", "loads": [gear], "effects": EFFECTS, **fields},
     )
 
 
@@ -141,16 +143,16 @@ def test_a_balance_that_runs_away(monkeypatch: pytest.MonkeyPatch) -> None:
     r, b, p0 = resistance(), 0.03, 8.0
     losses_by_film(monkeypatch, lambda t: p0 * math.exp(b * min(t, 400.0)))
     edge = (math.log(1.0 / (b * r * p0)) - 1.0) / b
-    outside = [edge - 30.0, edge - 15.0, edge + 5.0, edge + 20.0]
-    found = trb.preload_over(trb.cases.scene_nj210(), CYLINDER, outside, paths=PATHS)
+    outside = [edge - 30.0, edge - 15.0, edge + 5.0]
+    found = trb.preload_over(NJ210, CYLINDER, outside, paths=PATHS)
     assert len(found.rows) == 2
     assert found.runs_away_c == pytest.approx(edge, abs=1.0)
     assert 0.0 < found.rows[0].feedback < found.rows[1].feedback < 1.0
-    assert [one.why for one in found.without] == ["runs away"] * 2
+    assert [one.why for one in found.without] == ["runs away"]
     assert all(one.feedback >= 1.0 for one in found.without)
     assert "runs away" in str(found)
     with pytest.raises(trb.TrbError, match="runs away: one watt of loss makes"):
-        trb.preload_over(trb.cases.scene_nj210(), CYLINDER, [edge + 20.0], paths=PATHS)
+        trb.preload_over(NJ210, CYLINDER, [edge + 20.0], paths=PATHS)
 
 
 def test_losses_of_the_row_before_do_not_decide(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -159,7 +161,7 @@ def test_losses_of_the_row_before_do_not_decide(monkeypatch: pytest.MonkeyPatch)
     """
     r = resistance()
     losses_by_film(monkeypatch, lambda t: (100.0 if t < 100.0 else max(100.0 - 9.0 * (t - 100.0), 10.0)) / r)
-    found = trb.preload_over(trb.cases.scene_nj210(), CYLINDER, [0.0, 105.0], paths=PATHS)
+    found = trb.preload_over(NJ210, CYLINDER, [0.0, 105.0], paths=PATHS)
     assert not found.without
     assert module._film(found.rows[0].temperatures[""]) == pytest.approx(100.0, abs=0.2)
     assert module._film(found.rows[1].temperatures[""]) == pytest.approx(115.0, abs=0.2)
@@ -170,7 +172,7 @@ def test_parts_that_are_too_hot_do_not_run_away(monkeypatch: pytest.MonkeyPatch)
     r = resistance()
     losses_by_film(monkeypatch, lambda t: 280.0 / r)
     with pytest.raises(trb.TrbError, match=r"20 C, too hot: parts become hotter than 180 C"):
-        trb.preload_over(trb.cases.scene_nj210(), CYLINDER, [20.0], paths=PATHS)
+        trb.preload_over(NJ210, CYLINDER, [20.0], paths=PATHS)
 
 
 def test_an_error_of_the_machine_is_not_a_missing_balance(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -179,7 +181,7 @@ def test_an_error_of_the_machine_is_not_a_missing_balance(monkeypatch: pytest.Mo
 
     losses_by_film(monkeypatch, lambda t: 1.0 if t <= 21.0 else law(t))
     with pytest.raises(RuntimeError, match="a step failed"):
-        trb.preload_over(trb.cases.scene_nj210(), CYLINDER, [20.9], paths=PATHS)
+        trb.preload_over(NJ210, CYLINDER, [20.9], paths=PATHS)
 
 
 def test_a_play_that_opens_is_no_preload_that_runs_away() -> None:

@@ -467,7 +467,8 @@ SPIKE = trb.History.step((0.010, 0.0165), (3000.0, 40_000.0, 3000.0), rise=5e-4)
 @pytest.fixture(scope="module")
 def spike(tmp_path_factory: pytest.TempPathFactory) -> trb.Result:
     """A run whose load is largest in its first half, in a file."""
-    scene = trb.Scene(trb.cases.rig_30310(), speed_rpm=2000.0, axial_load=SPIKE, ring="follows", lubricant="vg68")
+    how = {"ring": "follows", "lubricant": "vg68", "effects": trb.Effects.standard().replace(n_slices=8)}
+    scene = trb.Scene(trb.cases.rig_30310(), speed_rpm=2000.0, axial_load=SPIKE, **how)
     file = tmp_path_factory.mktemp("spike") / "spike.h5"
     return trb.Simulation(scene).run(duration=0.04, save_groups=["time", "cage", "rollers", "peaks"], output=file)
 
@@ -518,7 +519,9 @@ def test_a_load_that_rotates_counts() -> None:
     as one with 4 kN that rest.
     """
     turning = trb.RotatingLoad(load=4e3)
-    alone = trb.Scene(WITHOUT_RIBS, speed_rpm=1000.0, rotating_load=turning, radial_load=0.0, ring="follows")
+    effects = trb.Effects.standard().replace(n_slices=4)  # a path of some thousand equilibria is found
+    scene = {"speed_rpm": 1000.0, "ring": "follows", "effects": effects}
+    alone = trb.Scene(WITHOUT_RIBS, rotating_load=turning, radial_load=0.0, **scene)
     rests = trb.Scene(WITHOUT_RIBS, speed_rpm=1000.0, radial_load=4e3)
     assert trb.rating(alone).life_hours == pytest.approx(trb.rating(rests).life_hours)
     turned = np.linspace(0.0, 2.0 * np.pi, 1000, endpoint=False)

@@ -211,8 +211,8 @@ def test_what_is_known_stays(path: str, value: float) -> None:
     known = bearing.replace({path: value})
     assert path not in [entry.path for entry in known.estimated]
     scene = trb.Scene(known, speed_rpm=2000.0, axial_load=3000.0)
-    built = [case.scene.bearing for case in draws_of(scene, list(open_inputs(scene)), 64) if case.scene is not None]
-    assert len(built) > 16
+    built = [case.scene.bearing for case in draws_of(scene, list(open_inputs(scene)), 24) if case.scene is not None]
+    assert len(built) > 6
     for one in built:
         assert (one.n_rollers if path == "n_rollers" else getattr(one.cage, path.removeprefix("cage."))) == value
 
@@ -269,9 +269,9 @@ def test_a_measured_torque_narrows_the_bands(tmp_path: Path) -> None:
     options = trb.RunOptions(duration=1e-3, accuracy="fast", save_groups=("contacts", "torque"))
     bands = {"effects.supply": (0.7, 1.0), "lubricant.temperature_c": (47.0, 60.0)}
     how: dict[str, Any] = {"options": options, "folder": tmp_path / "draws"}
-    prior = trb.uncertainty(scene, bands, samples=32, **how)
+    prior = trb.uncertainty(scene, bands, samples=20, **how)
     value = prior["torque"].value
-    found = trb.uncertainty(scene, bands, samples=32, given={"torque": (value, 0.05 * value)}, **how)
+    found = trb.uncertainty(scene, bands, samples=20, given={"torque": (value, 0.05 * value)}, **how)
     drawn = prior.data["torque"].values[1:]
     weight = np.exp(-0.5 * ((drawn - value) / (0.05 * value)) ** 2)
     assert found["torque"].mean == pytest.approx(float(weight @ drawn / weight.sum()))

@@ -14,7 +14,7 @@ from trbdyn.cli import main
 from trbdyn.model.cases import paper_30310
 from trbdyn.viewer import save_gltf
 
-NAMES = ("$x^{$", "a" * 300 + "<!--<script>", "\x1b[31mred\x07\r\n\u202eabc%s{0}\\frac{", "$")
+NAMES = ("$x^{$", "$\x1b[31mred\x07\r\n\u202eabc%s{0}\\frac{" + "a" * 300 + "<!--<script>")
 
 
 @pytest.mark.parametrize("name", NAMES)

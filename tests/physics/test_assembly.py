@@ -229,6 +229,7 @@ def test_files(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [path]
 
 
+@pytest.mark.usefixtures("drawn_only")
 def test_lives_of_a_pair_stand_in_its_report(tmp_path: Path) -> None:
     """Each bearing's lives by the loads of its run, and the life of both, as `trb.rating` has them; pressures in MPa."""
     result = pair({"force_x": 20e3}).run(duration=2e-3)

@@ -126,8 +126,8 @@ def test_the_promise_holds(proposal: Plan) -> None:
     """Against a longer run with everything on."""
     found = proposal.averages(proposal.run())["torque"]
     truth = rolling(quadrature="gauss", n_slices=32)
-    result = trb.Simulation(truth, accuracy="reference").run(duration=0.2, save_every=5e-4)
-    window = result.window(0.1)
+    result = trb.Simulation(truth, accuracy="reference").run(duration=0.12, save_every=5e-4)
+    window = result.window(0.06)
     true = float(window["inner_torque"].mean())
     own = observables.half_width(in_batches(Records({"": window}), ["torque"], 0.0)["torque"]) / true
     assert abs(found / true - 1.0) <= proposal.promised["torque"] + own

@@ -264,7 +264,12 @@ def write_run(path: Path) -> None:
         run(f".venv/bin/python -m trbdyn run rig_30310 {words}", path.parent)
 
 
-@pytest.mark.parametrize("sample", blocks("python"))
+def with_mark(sample: str) -> Any:
+    """Fifty turns are among the slow tests: the same sample runs for one turn in tests/api/test_without_extras.py."""
+    return pytest.param(sample, marks=[pytest.mark.slow] if "revolutions=50" in sample else [])
+
+
+@pytest.mark.parametrize("sample", [with_mark(sample) for sample in blocks("python")])
 def test_samples(sample: str, root: Path) -> None:
     forget(root)
     (root / "sample.py").write_text(sample, encoding="utf-8")
