@@ -66,6 +66,9 @@ typedef struct trb_body_kind {
   void (*slopes)(const trb_body *body, const trb_rigid_pose *pose, int coordinate, double *rates);
   /* what its drive and the loads on it put in while bodies act on it by a wrench; NULL: nothing */
   trb_drive_power (*work)(const trb_model *m, const trb_body *body, const trb_drive *drive, const double *y, const trb_wrench *load);
+  /* of a body that systems may share: what a wrench adds to its rates, which are written, and to what its drive puts in, whatever else acts on it */
+  trb_drive_power (*added)(const trb_model *m, const trb_body *body, const trb_drive *drive, const double *y, const trb_wrench *load,
+                           double *rates);
 } trb_body_kind;
 
 /* Most coordinates of a body that systems share. */

@@ -76,11 +76,11 @@ typedef struct support {
 static support support_of(const trb_model *m, const trb_body *body, const trb_drive *drive, const double *y)
 {
   const trb_ring_body *own = body->own;
+  support              s = {{0, 0, 0}, {0, 0, 0}, 0.0};
+  if (own->support_radial <= 0.0 && own->support_axial <= 0.0 && own->support_tilt <= 0.0) return s;
   const trb_ring_pose  nominal = {.axis = {0, 0, 1}, .centre = {0, 0, own->reference}};
   const trb_ring_pose *start = own->is_outer ? &nominal : &drive->ring;
-  support              s = {{0, 0, 0}, {0, 0, 0}, 0.0};
   trb_ring_pose        ring;
-  if (own->support_radial <= 0.0 && own->support_axial <= 0.0 && own->support_tilt <= 0.0) return s;
   ring_of(m, body, drive, y, &ring);
   const trb_vec3 leaned = trb_sub(ring.axis, start->axis);
   const trb_vec3 shift = trb_axpy(trb_sub(ring.centre, start->centre), own->support_position, leaned);
@@ -204,6 +204,27 @@ static trb_drive_power work_of(const trb_model *m, const trb_body *body, const t
                            trb_dot(given.force, ring.velocity) + trb_dot(given.moment, ring.omega)};
 }
 
+/* A force moves the centre of mass, and a moment about it turns the ring, but where the drive keeps the speed and carries it. */
+static trb_drive_power added_by(const trb_model *m, const trb_body *body, const trb_drive *drive, const double *y, const trb_wrench *load,
+                                double *rates)
+{
+  const trb_ring_body *own = body->own;
+  const trb_frame      f = frame_of(y);
+  const trb_vec3       force = from_r(own, drive, load->force);
+  const trb_vec3       moment = trb_to_frame(&f, trb_add(from_r(own, drive, load->moment), trb_cross(arm_of(own, &f), force)));
+  const double         per_mass = 1.0 / own->mass;
+  memset(rates, 0, TRB_FREE_RING_SIZE * sizeof *rates);
+  rates[TRB_FREE_RING_v_x] = per_mass * force.x;
+  rates[TRB_FREE_RING_v_y] = per_mass * force.y;
+  if (!own->keeps_speed) rates[TRB_FREE_RING_omega_a] = moment.z / own->inertia_axial;
+  if (!(m->params.effects.planar > 0.0)) {
+    rates[TRB_FREE_RING_v_z] = per_mass * force.z;
+    rates[TRB_FREE_RING_omega_n] = moment.x / own->inertia_transverse;
+    rates[TRB_FREE_RING_omega_t] = moment.y / own->inertia_transverse;
+  }
+  return (trb_drive_power){own->keeps_speed ? -moment.z * turn_rate(own, drive, y).z : 0.0, 0.0};
+}
+
 /* Where they stand where no state is known. */
 static void place_of(const trb_model *m, const trb_drive *drive, trb_ring_pose *pose) { trb_ring_prescribed.place(m, drive, pose); }
 
@@ -223,6 +244,7 @@ static const trb_coordinate coordinates[TRB_FREE_RING_SIZE] = {TRB_FREE_RING_STA
    .rates = rates_of, \
    .mass = mass_of, \
    .kinetic = kinetic_of, \
-   .work = work_of}
+   .work = work_of, \
+   .added = added_by}
 
 const trb_body_kind trb_ring_free = RING("free ring", place_of), trb_ring_housed = RING("free ring in a housing", place_outer);

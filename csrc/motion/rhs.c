@@ -239,36 +239,28 @@ static void add_hub(trb_dynamics *d, double *rates)
   }
 }
 
-static const trb_wrench no_load = {{0, 0, 0}, {0, 0, 0}};
-
 void trb_dynamics_body_rates(const trb_dynamics *d, int body, const double *y, const trb_wrench *load, double *rates)
 {
-  const trb_body       *is = &d->system->bodies[body];
-  const trb_rigid_pose *pose = &d->bodies[body].pose;
-  double                alone[TRB_MOST_CARRIED];
-  is->kind->rates(d->model, is, &d->drive, pose, y + is->first, load, rates);
-  if (!is->carried) return;
-  is->kind->rates(d->model, is, &d->drive, pose, y + is->first, &no_load, alone);
-  for (int i = 0; i < is->size; i++) rates[i] -= alone[i];
+  const trb_body *is = &d->system->bodies[body];
+  if (is->carried) (void)is->kind->added(d->model, is, &d->drive, y + is->first, load, rates);
+  else is->kind->rates(d->model, is, &d->drive, &d->bodies[body].pose, y + is->first, load, rates);
 }
 
 /* Books the work that passes between a bearing and the shaft that carries its ring: what the contacts do to the ring is taken from the
  * bearing and given to the system that has the shaft. What they take from the turning ring the drive puts in again, where it keeps the speed.
- * So the energies of each bearing add up by themselves. */
-static void add_passed(const trb_dynamics *d, int b, const double *y, double *rates)
+ * So the energies of each bearing add up by themselves. added: what the drive puts in against the contacts. */
+static void add_passed(const trb_dynamics *d, int b, trb_drive_power added, double *rates)
 {
-  const trb_body       *body = &d->system->bodies[b];
-  const trb_ring_pose  *ring = &d->bodies[b].ring;
-  const trb_drive      *drive = &d->drive;
-  const trb_vec3        force = trb_turn_z(d->on_body[b].force, drive->cosine, drive->sine);
-  const trb_vec3        moment = trb_turn_z(d->on_body[b].moment, drive->cosine, drive->sine);
-  const double          all = trb_dot(force, ring->velocity) + trb_dot(moment, ring->omega);
-  const double          turning = trb_dot(moment, ring->axis) * trb_dot(ring->omega, ring->axis);
-  const trb_drive_power with = body->kind->work(d->model, body, drive, y + body->first, &d->on_body[b]);
-  const trb_drive_power without = body->kind->work(d->model, body, drive, y + body->first, &no_load);
+  const trb_body      *body = &d->system->bodies[b];
+  const trb_ring_pose *ring = &d->bodies[b].ring;
+  const trb_drive     *drive = &d->drive;
+  const trb_vec3       force = trb_turn_z(d->on_body[b].force, drive->cosine, drive->sine);
+  const trb_vec3       moment = trb_turn_z(d->on_body[b].moment, drive->cosine, drive->sine);
+  const double         all = trb_dot(force, ring->velocity) + trb_dot(moment, ring->omega);
+  const double         turning = trb_dot(moment, ring->axis) * trb_dot(ring->omega, ring->axis);
   rates[trb_state_quadrature(d->system) + TRB_Q_work_shaft] -= turning;
   rates[trb_state_quadrature(d->system) + TRB_Q_work_ring] -= all - turning;
-  rates[body->carrier_quadrature + TRB_Q_work_ring] += all + (with.shaft - without.shaft);
+  rates[body->carrier_quadrature + TRB_Q_work_ring] += all + added.shaft;
 }
 
 static void put_hub(const trb_dynamics *d, const double *y, double *rates)
@@ -279,10 +271,10 @@ static void put_hub(const trb_dynamics *d, const double *y, double *rates)
     double         *own = rates + body->first;
     if (body->size == 0) continue;
     if (body->carried) {
-      double added[TRB_MOST_CARRIED] = {0};
-      trb_dynamics_body_rates(d, b, y, &d->on_body[b], added);
+      double                added[TRB_MOST_CARRIED] = {0};
+      const trb_drive_power given = body->kind->added(d->model, body, &d->drive, y + body->first, &d->on_body[b], added);
       for (int i = 0; i < body->size; i++) own[i] += added[i];
-      add_passed(d, b, y, rates);
+      add_passed(d, b, given, rates);
       continue;
     }
     trb_dynamics_body_rates(d, b, y, &d->on_body[b], own);

@@ -5,9 +5,17 @@
 #define TRB_STEPPING_RING_TANGENT_H
 
 #include "motion/dynamics.h"
+#include "stepping/constants.h"
 
 /* Of the ring: its centre, its axis (x, y), its velocity, its angular velocity; of the reaction: force, moment, padding. */
-enum { TRB_RING_IN = 11, TRB_RING_OUT = 8, TRB_WRENCH = 6, TRB_RING_OF_ROLLER = 12, TRB_RING_ALL = TRB_RING_OF_ROLLER + TRB_RING_IN };
+enum {
+  TRB_RING_IN = 11,
+  TRB_RING_ROOM = 12, /* the same, padded by zeros */
+  TRB_RING_OUT = 8,
+  TRB_WRENCH = 6,
+  TRB_RING_OF_ROLLER = 12,
+  TRB_RING_ALL = TRB_RING_OF_ROLLER + TRB_RING_IN
+};
 
 typedef struct trb_ring_slopes {
   double flow[TRB_RING_IN][TRB_FLOW_ROOM];     /* of the roller's flow with the ring's inputs, column by column */
@@ -15,14 +23,14 @@ typedef struct trb_ring_slopes {
 } trb_ring_slopes;
 
 typedef struct trb_ring_tangent {
-  trb_ring_slopes slopes;              /* with Broyden's corrections */
-  trb_ring_slopes by_differences;      /* as differences gave them */
-  double          value[TRB_RING_OUT]; /* reaction at the origin */
-  double          origin[TRB_RING_IN]; /* inputs there */
-  double          per[TRB_RING_IN];    /* weights of a distance */
+  _Alignas(TRB_CACHE_LINE * sizeof(double)) trb_ring_slopes slopes; /* with Broyden's corrections */
+  double          value[TRB_RING_OUT];                              /* reaction at the origin */
+  double          origin[TRB_RING_ROOM];                            /* inputs there */
+  double          per[TRB_RING_ROOM];                               /* weights of a distance */
   double          curve[TRB_RING_OUT]; /* of the reaction, and the ring's part of its direction: see trb_tangent */
-  double          along[TRB_RING_IN];
-  trb_ring_pose   from; /* the ring there, in inertial coordinates */
+  double          along[TRB_RING_ROOM];
+  trb_ring_pose   from;           /* the ring there, in inertial coordinates */
+  trb_ring_slopes by_differences; /* slopes as differences gave them; last, as they are seldom read */
 } trb_ring_tangent;
 
 /* A ring's inputs in R, which is turned against the frame of the ring's pose; or the slopes of inputs, from those of a pose. */

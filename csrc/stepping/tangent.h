@@ -20,21 +20,22 @@ enum { TRB_TANGENT_TURN = TRB_NR };
 _Static_assert(TRB_TANGENT_IN == TRB_NR + 1, "room for a roller's state and an angle");
 
 typedef struct trb_tangent {
-  double slope[TRB_TANGENT_IN][TRB_TANGENT_OUT]; /* column by column, with Broyden's corrections */
-  double by_differences[TRB_NR][TRB_NR];         /* slopes of the rates as differences gave them, column by column */
-  double value[TRB_TANGENT_OUT];                 /* flow at the origin */
-  double origin[TRB_TANGENT_IN];                 /* where it is exact */
-  double per[TRB_TANGENT_IN];    /* weights of a distance: one over tolerance, scaled so that the sum of squares is a mean */
-  double curve[TRB_TANGENT_OUT]; /* bend of the flow along the way on which the origins lie; zero: none is known */
-  double along[TRB_TANGENT_IN];  /* times a step: its part of the last step between origins, of which this is the direction */
-  int    bends;                  /* 1: the curve is not zero */
-  double length;                 /* of the last step between origins; 0: slopes were found at the origin */
-  double reach;                  /* distance up to which it is used */
-  double margin[TRB_MOST_PAIRS]; /* of the contacts at the origin, m */
-  double mean_uses;              /* for how many evaluations an origin is used: running mean */
-  int    uses;                   /* for how many this one was */
-  int    has_origin;             /* 0: there is no origin */
-  int    corrected;              /* how often its slopes were corrected since they were computed by differences */
+  _Alignas(TRB_CACHE_LINE *
+           sizeof(double)) double slope[TRB_TANGENT_IN][TRB_TANGENT_OUT]; /* column by column, with Broyden's corrections */
+  double value[TRB_TANGENT_OUT];                                          /* flow at the origin */
+  double origin[TRB_TANGENT_IN];                                          /* where it is exact */
+  double per[TRB_TANGENT_IN];            /* weights of a distance: one over tolerance, scaled so that the sum of squares is a mean */
+  double curve[TRB_TANGENT_OUT];         /* bend of the flow along the way on which the origins lie; zero: none is known */
+  double along[TRB_TANGENT_IN];          /* times a step: its part of the last step between origins, of which this is the direction */
+  int    bends;                          /* 1: the curve is not zero */
+  double length;                         /* of the last step between origins; 0: slopes were found at the origin */
+  double reach;                          /* distance up to which it is used */
+  double margin[TRB_MOST_PAIRS];         /* of the contacts at the origin, m */
+  double mean_uses;                      /* for how many evaluations an origin is used: running mean */
+  int    uses;                           /* for how many this one was */
+  int    has_origin;                     /* 0: there is no origin */
+  int    corrected;                      /* how often its slopes were corrected since they were computed by differences */
+  double by_differences[TRB_NR][TRB_NR]; /* slopes of the rates as differences gave them, column by column; last, as they are seldom read */
 } trb_tangent;
 
 typedef struct trb_tangents {
@@ -51,8 +52,8 @@ typedef struct trb_tangents {
   double                            slip;                     /* by which a roller may slip away from its origin in this evaluation, m/s */
   int                              *out_of_bounds;            /* scratch: whether a bound of the tangent is passed */
   trb_ring_offset                   offsets[TRB_MOST_BODIES]; /* of the rings, in this evaluation */
-  double                            inputs[TRB_MOST_MOVING_RINGS][TRB_RING_IN]; /* of those with coordinates, in this evaluation */
-  trb_ring_arms                     arms;                                       /* what bounds the change of an interference */
+  double                            inputs[TRB_MOST_MOVING_RINGS][TRB_RING_ROOM]; /* of those with coordinates, in this evaluation */
+  trb_ring_arms                     arms;                                         /* what bounds the change of an interference */
   double                            time;       /* at which the slopes of all rollers were last evaluated, s */
   int                               has_slopes; /* whether they were at all */
   trb_memory                        memory;     /* of all arrays */

@@ -51,7 +51,7 @@ static double power_error(const double *flow, const double *error)
  * interpolation through the three origins is f + (slope + e/L) x + e/(L (L + K)) x (x + L); where slopes were found at the origin before,
  * K = 0. If the way does not go on evenly, nothing is known of a bend. */
 static void bend(trb_tangents *t, int roller, double length, int same_way, const double *direction, const double *error,
-                 double (*of_ring)[TRB_RING_IN], double (*off)[TRB_RING_OUT])
+                 double (*of_ring)[TRB_RING_ROOM], double (*off)[TRB_RING_OUT])
 {
   trb_tangent *r = &t->rollers[roller];
   const int    even = length < trb_even_steps_ratio * r->length && r->length < trb_even_steps_ratio * length;
@@ -84,7 +84,7 @@ typedef struct tangent_errors {
 
 /* How an exact flow and the exact reactions differ from the slopes. */
 static tangent_errors compare(const trb_tangents *t, int roller, const trb_tangent_measure *measure, const double *flow,
-                              const trb_wrench *reactions, const double *step, double (*of_ring)[TRB_RING_IN], double *error,
+                              const trb_wrench *reactions, const double *step, double (*of_ring)[TRB_RING_ROOM], double *error,
                               double (*off)[TRB_RING_OUT])
 {
   const trb_tangent       *r = &t->rollers[roller];
@@ -118,7 +118,7 @@ void trb_tangent_learn(trb_tangents *t, const trb_dynamics *d, int roller, const
   const trb_tangent_measure *measure = t->measure;
   const double               turn = d->drive.frame_angle, *margin = d->loads[roller].margin;
   const int                  n_moving = t->system->n_moving;
-  double                     of_ring[TRB_MOST_MOVING_RINGS][TRB_RING_IN], off[TRB_MOST_MOVING_RINGS][TRB_RING_OUT];
+  double                     of_ring[TRB_MOST_MOVING_RINGS][TRB_RING_ROOM], off[TRB_MOST_MOVING_RINGS][TRB_RING_OUT];
   trb_tangent               *r = &t->rollers[roller];
   const trb_block_kernels   *kernels = measure->kernels;
   double                     step[TRB_TANGENT_IN], error[TRB_TANGENT_OUT];

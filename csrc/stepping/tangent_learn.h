@@ -14,7 +14,7 @@ void trb_tangent_learn(trb_tangents *t, const trb_dynamics *d, int roller, const
                        const trb_wrench *reactions);
 
 /* A step along the way of the origins, over the last step between them. */
-static inline double trb_tangent_share(const trb_tangents *t, int roller, const double *step, double (*of_ring)[TRB_RING_IN])
+static inline double trb_tangent_share(const trb_tangents *t, int roller, const double *step, double (*of_ring)[TRB_RING_ROOM])
 {
   const double *along = t->rollers[roller].along;
   double        sum[4] = {0}; /* side by side: one sum alone would wait for each of its additions */
@@ -22,7 +22,8 @@ static inline double trb_tangent_share(const trb_tangents *t, int roller, const 
     for (int k = 0; k < 4; k++) sum[k] += along[i + k] * step[i + k];
   for (int k = 0; k < t->system->n_moving; k++) {
     const double *of = trb_tangents_ring_of(t, roller, k)->along;
-    for (int i = 0; i < TRB_RING_IN; i++) sum[i % 4] += of[i] * of_ring[k][i];
+    for (int i = 0; i < TRB_RING_ROOM; i += 4)
+      for (int q = 0; q < 4; q++) sum[q] += of[i + q] * of_ring[k][i + q];
   }
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/variant.h"
 #include "stepping/constants.h"
 
 enum { CENTRE = 0, AXIS = 3, VELOCITY = 5, OMEGA = 8 };
@@ -26,14 +27,26 @@ void trb_ring_inputs(const trb_ring_pose *ring, const trb_drive *drive, double *
   put(in.omega, inputs + OMEGA);
 }
 
-/* Step of a ring's inputs from the origin; gives the sum of squares of step times per. */
-static double step_of(const trb_ring_tangent *t, const double *inputs, double *step)
+static trb_wide load(const double *from)
 {
-  double sum = 0.0;
-  for (int i = 0; i < TRB_RING_IN; i++) {
-    step[i] = inputs[i] - t->origin[i];
-    sum += step[i] * t->per[i] * (step[i] * t->per[i]);
+  trb_wide v;
+  memcpy(&v, from, sizeof v);
+  return v;
+}
+
+_Static_assert(TRB_RING_ROOM % TRB_WIDE == 0, "inputs are whole vectors");
+
+/* Step of a ring's inputs from the origin; gives the sum of squares of step times per. */
+static double step_of(const trb_ring_tangent *t, const double *restrict inputs, double *restrict step)
+{
+  trb_wide all = {0};
+  double   sum = 0.0;
+  for (int i = 0; i < TRB_RING_ROOM; i += TRB_WIDE) {
+    const trb_wide by = load(inputs + i) - load(t->origin + i), weighted = by * load(t->per + i);
+    memcpy(step + i, &by, sizeof by);
+    all += weighted * weighted;
   }
+  for (int k = 0; k < TRB_WIDE; k++) sum += all[k];
   return sum;
 }
 
@@ -139,7 +152,7 @@ void trb_rings_place(trb_tangents *t, const trb_dynamics *d)
   for (int k = 0; k < t->system->n_moving; k++) trb_ring_inputs(&d->bodies[t->system->moving[k]].ring, &d->drive, t->inputs[k]);
 }
 
-double trb_rings_step(const trb_tangents *t, int roller, double (*steps)[TRB_RING_IN])
+double trb_rings_step(const trb_tangents *t, int roller, double (*steps)[TRB_RING_ROOM])
 {
   double sum = 0.0;
   for (int k = 0; k < t->system->n_moving; k++) sum += step_of(trb_tangents_ring_of(t, roller, k), t->inputs[k], steps[k]);

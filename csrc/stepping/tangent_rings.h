@@ -23,7 +23,7 @@ double trb_rings_error(const trb_tangents *t, const trb_ring_tangent *ring, cons
 /* The inputs of the rings at the poses kept in the dynamics. */
 void trb_rings_place(trb_tangents *t, const trb_dynamics *d);
 /* Their steps from a roller's origin, one ring after the other; gives the sum of squares of weighted steps. */
-double trb_rings_step(const trb_tangents *t, int roller, double (*steps)[TRB_RING_IN]);
+double trb_rings_step(const trb_tangents *t, int roller, double (*steps)[TRB_RING_ROOM]);
 /* Broyden's correction of the part of a ring by the errors of flow and reaction. to_roller, to_ring: directions of the correction. */
 void trb_rings_correct(trb_ring_tangent *ring, const double *in_flow, const double *in_reaction, const double *to_roller,
                        const double *to_ring);

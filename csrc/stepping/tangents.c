@@ -226,7 +226,7 @@ static int follow(void *self, const trb_dynamics *d, int roller, const double *y
   trb_tangent               *r = &t->rollers[roller];
   const trb_tangent_measure *measure = t->measure;
   const trb_block_kernels   *kernels = measure->kernels;
-  double                     step[TRB_TANGENT_IN] = {0}, of_ring[TRB_MOST_MOVING_RINGS][TRB_RING_IN];
+  double                     step[TRB_TANGENT_IN] = {0}, of_ring[TRB_MOST_MOVING_RINGS][TRB_RING_ROOM];
   if (t->under_way) return 0;
   const double distance2 = r->has_origin
                                ? kernels->step_from(r->origin, r->per, y, d->drive.frame_angle, step) + trb_rings_step(t, roller, of_ring)
