@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -92,6 +94,47 @@ def test_a_long_run_is_checked_in_pieces_from_its_states(run: trb.Result) -> Non
     assert sample.own[-1]["power_loss"] == pytest.approx(float(window.power_loss.mean()), rel=5e-3)
 
 
+def test_a_repetition_that_takes_too_long_is_compared_as_far_as_it_came(
+    run: trb.Result, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    repeating = Repeating(run, [TABLE["power_loss"]])
+    sample = repeating.sample(repeating.whole)
+    looks = itertools.count()  # a clock that goes on by one with each record
+    monkeypatch.setattr("trbdyn.run.repeat.clock", SimpleNamespace(process_time=lambda: float(next(looks))))
+    assert not repeating.pair(sample, shifted=False, until=10.0)
+    assert sample.piece == repeating.whole
+    assert not sample.tight
+    assert repeating.pair(sample, shifted=False, until=next(looks) + 60.0)
+    assert run.time[24] < sample.piece.until < run.time[32]
+    right = float(run.window(0.0, sample.piece.until).power_loss.mean())
+    for values in (*sample.own, *sample.tight):
+        assert values["power_loss"] == pytest.approx(right, rel=5e-3)
+    assert (len(sample.own), len(sample.tight)) == (2, 1)
+    # one that ends earlier than those before it is not comparable with them
+    assert not repeating.pair(sample, shifted=True, until=next(looks) + 40.0)
+    assert (len(sample.own), len(sample.tight)) == (2, 1)
+    assert repeating.own(sample)
+    assert len(sample.own) == 3
+
+
+def each_record_takes(seconds: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    looks = itertools.count(0.0, seconds)
+    for module in ("repeat", "check"):
+        monkeypatch.setattr(f"trbdyn.run.{module}.clock", SimpleNamespace(process_time=lambda: next(looks)))
+
+
+def test_the_note_says_how_much_of_a_run_was_repeated(run: trb.Result, monkeypatch: pytest.MonkeyPatch) -> None:
+    records = len(run.time)
+    each_record_takes(1.0, monkeypatch)
+    whole = trb.check(run, budget_s=2.5 * records)
+    assert "the whole run was repeated, once," in whole.note
+    assert whole.spent_s <= 2.5 * records
+    short = trb.check(run, budget_s=0.8 * records)
+    assert 0.0 < short.covered < 1.0
+    assert f"the first {100.0 * short.covered:.2g} % of the run were repeated" in short.note
+    assert "the time was too short" in trb.check(run, budget_s=10.0).note
+
+
 def test_a_jump_has_a_piece_of_its_own() -> None:
     load = trb.History(times=(0.0, 0.008, 0.009, 0.02), values=(4000.0, 4000.0, 9000.0, 9000.0))
     result = trb.Simulation(scene(axial_load=load, ring="follows"), accuracy="fast").run(duration=DURATION)
@@ -99,7 +142,7 @@ def test_a_jump_has_a_piece_of_its_own() -> None:
     assert any(piece.begin < 0.008 and piece.until > 0.009 for piece in chosen)
 
 
-def test_bearings_on_a_shaft_are_checked_together() -> None:
+def test_bearings_on_a_shaft_are_checked_together(monkeypatch: pytest.MonkeyPatch) -> None:
     bearing = trb.Bearing.named("30205")
     pair = trb.Assembly.pair(
         bearing,
@@ -109,8 +152,9 @@ def test_bearings_on_a_shaft_are_checked_together() -> None:
         shaft=trb.Shaft(mass=1.0, inertia_axial=1e-3, inertia_transverse=2e-3),
         speed_rpm=1500,
     )
-    result = trb.Simulation(pair, accuracy="fast").run(duration=0.004)
-    found = trb.check(result, budget_s=0.5)
+    result = trb.Simulation(pair, accuracy="fast").run(duration=0.002)
+    each_record_takes(1.0, monkeypatch)
+    found = trb.check(result, budget_s=2.5 * len(result.time))
     assert {"left_torque", "right_torque"} <= set(found.numbers)
     assert "a bearing on a shaft" in trb.check(result["left"]).note
 

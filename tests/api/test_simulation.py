@@ -44,6 +44,18 @@ def test_a_state_has_the_angle_of_the_shaft(begun: float | None) -> None:
     assert sim.state.shaft_angle == pytest.approx(float(sim.record()["shaft_angle"]), rel=1e-12)
 
 
+def test_simulations_of_equal_scenes_begin_in_one_equilibrium() -> None:
+    one, same, other = simulate(), simulate(accuracy="fast"), Simulation(paper_30310(3000.0, 4900.0))
+    assert one.equilibrium is same.equilibrium
+    assert other.equilibrium is not one.equilibrium
+    with pytest.raises(ValueError, match="read-only"):
+        one.equilibrium.rollers[0, 0] = 0.0
+    before = same.state.vector
+    one.run(duration=1e-4)
+    np.testing.assert_array_equal(same.state.vector, before)
+    np.testing.assert_array_equal(simulate().state.vector, before)
+
+
 def test_run_returns_everything(short: Result) -> None:
     assert short.success
     assert "reached 0.002" in short.message

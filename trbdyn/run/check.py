@@ -29,6 +29,10 @@ from trbdyn.run.repeat import DEARER, Repeating, pieces
 BUDGET_S: Final = 2.0
 """Processor time of a check (s), or `BUDGET_SHARE` of that of the run if it is more."""
 BUDGET_SHARE: Final = 0.1
+MOST_OWN: Final = 6
+"""Repetitions with the run's own tolerances alone, at most, where the time does not allow another pair: they tell the scatter."""
+LEFT_FOR_OWN: Final = 2
+"""Of them, those that time is left for, if a fifth of all is enough for it."""
 
 SLOW: Final = "orbit of the cage, spacing of the rollers and settling: their memory is longer than a check"
 
@@ -102,8 +106,8 @@ def check(result: Result | AssemblyResult, *, budget_s: float | None = None) -> 
     result : Result or AssemblyResult
         The run, in memory or from a file.
     budget_s : float, optional
-        Processor time that the check may take (s); by default 2 s, or a tenth of the time of the run if that is more. The
-        pair that is begun is finished.
+        Processor time that the check may take (s); by default 2 s, or a tenth of the time of the run if that is more. A
+        repetition that takes longer ends there, and what it has come through is compared.
 
     Returns
     -------
@@ -124,7 +128,7 @@ def check(result: Result | AssemblyResult, *, budget_s: float | None = None) -> 
     --------
     >>> import trbdyn as trb
     >>> result = trb.Simulation(trb.cases.scene_30310(3000.0, 4930.0)).run(revolutions=0.2)
-    >>> found = trb.check(result, budget_s=0.5)
+    >>> found = trb.check(result)
     >>> found.numbers["torque"].answer
     'clear'
     """
@@ -147,53 +151,75 @@ class _Checking:
     def __init__(self, result: Result | AssemblyResult, budget: float) -> None:
         self.budget, self.began = budget, clock.process_time()
         self.repeating = Repeating(result, [row for row in table.rows() if row.checked])
+        reading = clock.process_time() - self.began
+        self.end = self.began + max(budget - 2.0 * reading, 0.5 * budget)
+        """Processor time at which a repetition ends (s): its numbers are read then, as those of the run were."""
         self.whole = False
 
     def go(self) -> Check:
         repeating = self.repeating
         if repeating.why_not:
             return Check({}, note=f"{NOTHING}{repeating.why_not}.")
-        cost = repeating.cost_per_second * (1.0 + DEARER)
-        length = repeating.length
-        self.whole = cost * length <= self.budget
-        if self.whole:
-            samples = self._again(repeating.whole)
-        elif not repeating.has_states:
-            samples = self._again(next(pieces(repeating, self.budget / cost)))
-        else:
-            samples = self._each(pieces(repeating, self.budget / cost))
+        samples = self._repeated()
         samples = [one for one in samples if one.own and one.tight]
+        self.whole = [one.piece for one in samples] == [repeating.whole]
         names = [name for name in repeating.values if all(one.has(name) for one in samples)] if samples else []
         numbers = {name: judged(name, samples) for name in names}
-        covered = min(sum(one.piece.until - one.piece.begin for one in samples) / length, 1.0)
+        covered = min(sum(one.piece.until - one.piece.begin for one in samples) / repeating.length, 1.0)
         pairs = sum(len(one.tight) for one in samples)
         spent = clock.process_time() - self.began
         return Check(numbers, pairs, covered, spent, self._note(samples, covered, spent), self._words())
 
-    def _again(self, piece: Piece) -> list[Sample]:
-        """Pairs of one piece, until its numbers are known."""
-        repeating = self.repeating
-        sample = repeating.sample(piece)
+    def _repeated(self) -> list[Sample]:
+        """The whole run, if the time is expected to be enough for it, before or after a piece has shown what a tight repetition
+        takes; else pieces of it.
+        """
+        repeating, length = self.repeating, self.repeating.length
+        cost = repeating.cost_per_second * (1.0 + DEARER)
+        if cost * length <= self.budget:
+            return self._again(repeating.sample(repeating.whole))
+        chosen = pieces(repeating, self.budget / cost)
+        before, first = clock.process_time(), repeating.sample(next(chosen))
+        repeating.pair(first, shifted=True, until=self.end)
+        now = clock.process_time()
+        if first.tight and (now - before) * length / (first.piece.until - first.piece.begin) <= self.end - now:
+            return self._again(repeating.sample(repeating.whole))
+        return self._each(first, now - before, chosen) if repeating.has_states else self._again(first)
+
+    def _again(self, sample: Sample) -> list[Sample]:
+        """Pairs of one piece, until its numbers are known or the time is over; what is left of the time then goes to repetitions
+        with the run's own tolerances, as they are cheap and tell the scatter.
+        """
+        repeating, before = self.repeating, clock.process_time()
+        own = repeating.cost_per_second * (sample.piece.until - sample.piece.begin)
+        until = self.end - min(LEFT_FOR_OWN * own, 0.2 * self.budget)
         for pair in range(MOST_PAIRS):
-            if not repeating.pair(sample, shifted=pair > 0):
+            if not repeating.pair(sample, shifted=pair > 0, until=self.end if pair else until):
                 break
-            if all(judged(name, [sample]).answer != "unsettled" for name in sample.own[0] if sample.has(name)):
+            spent = clock.process_time() - before
+            if self._known(sample) or spent * (pair + 2) / (pair + 1) > self.end - before:
                 break
-            if (clock.process_time() - self.began) * (pair + 2) / (pair + 1) > self.budget:
+        for _ in range(MOST_OWN):
+            begun = clock.process_time()
+            if not sample.tight or self._known(sample) or begun + own > self.end or not repeating.own(sample, self.end):
                 break
+            own = clock.process_time() - begun
         return [sample]
 
-    def _each(self, all_pieces: Iterable[Piece]) -> list[Sample]:
-        """A pair of each piece, as many as the time allows, at least one."""
-        samples: list[Sample] = []
-        for piece in all_pieces:
+    def _known(self, sample: Sample) -> bool:
+        """Whether every number of a piece is known to be right, or to be wrong."""
+        return all(judged(name, [sample]).answer != "unsettled" for name in sample.own[0] if sample.has(name))
+
+    def _each(self, first: Sample, spent: float, others: Iterable[Piece]) -> list[Sample]:
+        """A pair of each of the other pieces, too, as many as the time allows; the latest one took so much of it (s)."""
+        samples = [first]
+        for piece in others:
             before = clock.process_time()
-            sample = self.repeating.sample(piece)
-            self.repeating.pair(sample, shifted=True)
-            samples.append(sample)
-            now = clock.process_time()
-            if now - self.began + (now - before) > self.budget:
+            if before + spent > self.end:
                 break
+            samples.append(self.repeating.sample(piece))
+            self.repeating.pair(samples[-1], shifted=True, until=self.end)
+            spent = clock.process_time() - before
         return samples
 
     def _words(self) -> dict[str, str]:
@@ -206,10 +232,10 @@ class _Checking:
 
     def _note(self, samples: Sequence[Sample], covered: float, spent: float) -> str:
         if not samples:
-            return "Nothing could be checked: the repetitions with tighter tolerances did not come to their end."
+            return "Nothing could be checked: a repetition with tighter tolerances failed, or the time was too short for it."
         if self.whole:
             what = f"the whole run was repeated, {_times(len(samples[0].tight))}"
-        elif not self.repeating.has_states:
+        elif len(samples) == 1 and samples[0].piece.begin == self.repeating.whole.begin:
             what = f"the first {100.0 * covered:.2g} % of the run were repeated, {_times(len(samples[0].tight))}"
         else:
             count = "one piece was" if len(samples) == 1 else f"{len(samples)} pieces were"

@@ -24,7 +24,7 @@ from trbdyn.model.profiles import profile_drop, raceway_drops
 from trbdyn.model.scene import Scene
 from trbdyn.results.result import Result
 from trbdyn.run.replay import Replay
-from trbdyn.statics.start import contacts_at_start
+from trbdyn.statics.contacts_at_start import contacts_at_start
 
 Array = NDArray[np.float64]
 Contacts = dict[str, Array]

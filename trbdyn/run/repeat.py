@@ -6,11 +6,14 @@ A piece of a run of one bearing begins in the state of a record; one of bearings
 from __future__ import annotations
 
 import math
+import time as clock
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from trbdyn.errors import StepError
 from trbdyn.model.assembly import Assembly
@@ -32,7 +35,8 @@ LEFT_OUT: Final = 5e-3
 AFTER_JUMP: Final = 2.0
 """Turns after a jump of a load or a speed that belong to its piece."""
 LEAST_RECORDS: Final = 8
-"""Records of the run in a piece below which its numbers there come from repetitions alone."""
+"""Records of the run in a piece below which its numbers there come from repetitions alone; and records of a repetition below
+which the time that ended it was too short to compare anything."""
 UNKNOWN_COST: Final = 1.0
 """Time of a second of the bearing (s) where a result does not tell what it took: about real time."""
 DEARER: Final = 6.0
@@ -97,22 +101,51 @@ class Repeating:
         parts = {name: part.window(piece.begin, piece.until) for name, part in self.parts.items()}
         return Sample(piece, [self._numbers(parts, piece.since, piece.since)])
 
-    def pair(self, sample: Sample, *, shifted: bool) -> bool:
-        """Repeat a piece with the run's own tolerances from a state that is moved, and with tighter ones, from such a state if
-        `shifted`. False where a repetition did not come to its end.
+    def own(self, sample: Sample, until: float = math.inf) -> bool:
+        """Repeat a piece with the run's own tolerances from a state that is moved. False where that did not come to its end, or
+        not up to a processor time (s).
         """
-        piece = sample.piece
-        averaged = self.window if piece == self.whole else piece.since
-        own = self._repeat(piece, self._own, shifted=True)
-        tight = None if own is None else self._repeat(piece, self._tight, shifted=shifted)
-        if own is None or tight is None:
+        found = self._repeat(sample.piece, self._own, shifted=True, until=until)
+        if found is None or not _reached(found, sample.piece):
             return False
-        sample.own.append(self._numbers(own, piece.since, averaged))
-        sample.tight.append(self._numbers(tight, piece.since, averaged))
+        self._add(sample, sample.own, found)
         return True
 
-    def _repeat(self, piece: Piece, options: Mapping[str, Any], *, shifted: bool) -> Mapping[str, Result] | None:
-        """A repetition of a piece with these options, not watched; None where it fails."""
+    def pair(self, sample: Sample, *, shifted: bool, until: float = math.inf) -> bool:
+        """Repeat a piece with the run's own tolerances from a state that is moved, and with tighter ones, from such a state if
+        `shifted`. False where a repetition failed.
+
+        Both end at a processor time (s) at the latest, that of the own tolerances when half of what is left has passed. The
+        sample then is of the shorter piece that both have come through, if it is long enough to be compared and nothing was
+        measured of the longer one.
+        """
+        piece, half = sample.piece, 0.5 * (clock.process_time() + until)
+        own = self._repeat(piece, self._own, shifted=True, until=half)
+        tight = None if own is None else self._repeat(piece, self._tight, shifted=shifted, until=until)
+        if own is None or tight is None:
+            return False
+        if not (_reached(own, piece) and _reached(tight, piece)):
+            times = min((_times(own), _times(tight)), key=len)
+            reached = float(times[-1])
+            if sample.tight or int(np.sum(times >= piece.since)) < LEAST_RECORDS:
+                return False
+            sample.piece = replace(piece, until=reached)
+            sample.own = self.sample(sample.piece).own
+            own, tight = (
+                {name: part.window(piece.begin, reached) for name, part in one.items()} for one in (own, tight)
+            )
+        self._add(sample, sample.own, own)
+        self._add(sample, sample.tight, tight)
+        return True
+
+    def _add(self, sample: Sample, to: list[dict[str, float]], parts: Mapping[str, Result]) -> None:
+        piece = sample.piece
+        to.append(self._numbers(parts, piece.since, self.window if piece == self.whole else piece.since))
+
+    def _repeat(
+        self, piece: Piece, options: Mapping[str, Any], *, shifted: bool, until: float
+    ) -> Mapping[str, Result] | None:
+        """A repetition of a piece with these options, not watched, up to a processor time (s); None where it fails."""
         assert self.subject is not None
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -128,7 +161,11 @@ class Repeating:
             times = output_times(piece.begin, piece.until, every)
             settings = sim.options.replace(save_every=every, save_groups=self.first.groups)
             try:
-                return Run(sim, settings, times, None, watched=False).go(progress=False).by_name
+                return (
+                    Run(sim, settings, times, lambda _: clock.process_time() > until, watched=False, look_every=1)
+                    .go(progress=False)
+                    .by_name
+                )
             except StepError:
                 return None
 
@@ -144,6 +181,14 @@ class Repeating:
                 if value is not None and math.isfinite(value)
             }
         return found
+
+
+def _times(parts: Mapping[str, Result]) -> NDArray[np.float64]:
+    return next(iter(parts.values())).time
+
+
+def _reached(parts: Mapping[str, Result], piece: Piece) -> bool:
+    return math.isclose(_times(parts)[-1], piece.until, rel_tol=1e-9)
 
 
 def pieces(run: Repeating, most: float) -> Iterator[Piece]:

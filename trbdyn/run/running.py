@@ -86,7 +86,7 @@ class RunningBearing:
 
 class Run:
     """One call of `Simulation.run`, or what is left of it when it is resumed after `done` records. `watched`: its energy is
-    judged.
+    judged. `look_every`: records between two calls of the callback.
     """
 
     def __init__(
@@ -98,9 +98,10 @@ class Run:
         done: int = 0,
         *,
         watched: bool = True,
+        look_every: int = CHUNK_RECORDS,
     ) -> None:
         self.sim = sim
-        self.watched = watched
+        self.watched, self.look_every = watched, look_every
         self.options = options
         self.times = times
         self.callback = callback
@@ -245,7 +246,7 @@ class Run:
         self.watches = watches
         while self.done < self.times.size:
             look = self.bearings[0].until.next_look(self.done)
-            chunk = self.times[self.done : min(self.done + CHUNK_RECORDS, look or self.times.size)]
+            chunk = self.times[self.done : min(self.done + self.look_every, look or self.times.size)]
             # a signal may come before the core answers: rows that are filled are those with a finite time
             self.filling = records = np.empty((chunk.size, sim._core.row_length))
             records[:, 0] = np.nan

@@ -16,8 +16,8 @@ from trbdyn.model.motion import History, is_constant, value_at, values_of
 from trbdyn.model.scene import Scene
 from trbdyn.standards import lamina
 from trbdyn.standards.iso281 import LIFE_EXPONENT
+from trbdyn.statics.contacts_at_start import contacts_at_start
 from trbdyn.statics.equilibrium import most_radial_load
-from trbdyn.statics.start import contacts_at_start
 
 Array = NDArray[np.float64]
 

@@ -23,7 +23,7 @@ from trbdyn.model.effects import Effects
 from trbdyn.model.lubricants import Lubricant
 from trbdyn.model.motion import value_at
 from trbdyn.model.scene import Scene
-from trbdyn.statics.start import contacts_at_start
+from trbdyn.statics.contacts_at_start import contacts_at_start
 
 Array = NDArray[np.float64]
 

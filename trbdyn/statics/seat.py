@@ -11,6 +11,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,6 +45,9 @@ from trbdyn.statics.start import start_state
 from trbdyn.statics.state_view import StateView
 
 Array = NDArray[np.float64]
+
+KEPT: Final = 4
+"""Equilibria of the start that are kept."""
 Layout = list[tuple[str, int, tuple[int, ...]]]
 
 
@@ -171,14 +176,25 @@ class Seated:
 
 
 def seat_alone(scene: Scene, instruction_set: str = "") -> Seated:
-    """What the core takes of one bearing: its ring is held, follows its load, or is free."""
+    """What the core takes of one bearing: its ring is held, follows its load, or is free. The latest ones are kept, as a run, its
+    summary and its check begin in one equilibrium; not where a file is read, which may change.
+    """
+    return (_seat_alone if scene.modes_from_file else _kept_alone)(scene, instruction_set)
+
+
+def _seat_alone(scene: Scene, instruction_set: str) -> Seated:
     model = build_model(scene, instruction_set)
     motion, equilibrium = ring_motion(model, scene)
     vector = start_state(model, scene, motion, equilibrium)
     said = (pressed_rollers(model, scene, motion, vector), placed_again(model, scene, motion))
     unusual_there = (*unusual(scene, equilibrium), *(text for text in said if text))
     bearing = SeatedBearing("", 0, scene, model, motion, equilibrium, model.state_layout(), unusual_there)
+    for values in (vector, *vars(equilibrium).values()):
+        np.asarray(values).setflags(write=False)
     return Seated((bearing,), vector, scene.start.time)
+
+
+_kept_alone = lru_cache(maxsize=KEPT)(_seat_alone)
 
 
 def seat_all(seating: Seating, instruction_set: str = "") -> Seated:

@@ -7,7 +7,7 @@ way round, all that belongs to the shaft is turned by half a turn about x.
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import singledispatch
+from functools import lru_cache, singledispatch
 from typing import Any
 
 import numpy as np
@@ -23,7 +23,7 @@ from trbdyn.model.scene import Scene
 from trbdyn.model.start import Start
 from trbdyn.statics.assembly import ShaftEquilibrium, equilibrium
 from trbdyn.statics.free_ring import axis_of
-from trbdyn.statics.seat import Seat, Seated, Seating, seat_all, seat_alone
+from trbdyn.statics.seat import KEPT, Seat, Seated, Seating, seat_all, seat_alone
 from trbdyn.statics.shaft_balance import turns_of
 
 Array = NDArray[np.float64]
@@ -43,8 +43,16 @@ seated.register(Seating, seat_all)
 
 @seated.register(Assembly)
 def _of_assembly(assembly: Assembly, instruction_set: str = "") -> Seated:
+    reads = any(assembly.scene(index).modes_from_file for index in range(len(assembly.bearings)))
+    return (_seat_assembly if reads else _kept_assembly)(assembly, instruction_set)
+
+
+def _seat_assembly(assembly: Assembly, instruction_set: str) -> Seated:
     found = seat_all(seating_of(assembly), instruction_set)
     return found if assembly.start is None else _gone_on(found, assembly.start)
+
+
+_kept_assembly = lru_cache(maxsize=KEPT)(_seat_assembly)
 
 
 def _gone_on(seated: Seated, start: Start) -> Seated:

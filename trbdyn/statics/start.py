@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,12 +11,10 @@ from trbdyn import _core
 from trbdyn.errors import InputError
 from trbdyn.model.motion import value_at
 from trbdyn.model.scene import Scene
-from trbdyn.model.start import Start
 from trbdyn.statics.cage_start import place_cage
-from trbdyn.statics.core_model import build_model
 from trbdyn.statics.equilibrium import Equilibrium, nominal_angles
 from trbdyn.statics.free_ring import axis_of, put_axis
-from trbdyn.statics.ring_motion import RingMotion, ring_motion
+from trbdyn.statics.ring_motion import RingMotion
 from trbdyn.statics.state_view import StateView
 
 Array = NDArray[np.float64]
@@ -105,26 +101,3 @@ def _join_orbits(state: StateView, scene: Scene) -> None:
     momentum = geometry.roller_mass * np.sum(radius * faster) + cage.inertia_axial * state["cage_omega_a"]
     state["cage_omega_a"] = float(momentum) / (geometry.roller_mass * np.sum(radius**2) + cage.inertia_axial)
     state["cage_psi"] = float(np.mean(state["roller_psi"]))
-
-
-def contacts_at_start(scene: Scene) -> dict[str, Array]:
-    """Every intermediate quantity of every contact at the start; names, shapes and units as in `Simulation.contacts`. The arrays
-    are read-only: the latest scenes are kept, as rating and creep of a run ask for one equilibrium.
-    """
-    return dict(_contacts_at_start(scene))
-
-
-@lru_cache(maxsize=8)
-def _contacts_at_start(scene: Scene) -> Mapping[str, Array]:
-    if scene.elastic_cage is not None and scene.elastic_cage.file is not None:
-        # contacts of rollers do not need the modes, whose file is not opened for the summary of a result
-        start = Start(time=scene.start.time) if scene.start.kind == "state" else scene.start
-        scene = scene.replace(elastic_cage=None, start=start)
-    model = build_model(scene)
-    motion, equilibrium = ring_motion(model, scene)
-    vector = start_state(model, scene, motion, equilibrium)
-    onlooker = motion.open(model, scene.start.time, vector)
-    found = onlooker.contacts(scene.start.time, vector)
-    for values in found.values():
-        np.asarray(values).setflags(write=False)
-    return found
