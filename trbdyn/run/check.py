@@ -152,7 +152,7 @@ class _Checking:
         self.budget, self.began = budget, clock.process_time()
         self.repeating = Repeating(result, [row for row in table.rows() if row.checked])
         reading = clock.process_time() - self.began
-        self.end = self.began + max(budget - 2.0 * reading, 0.5 * budget)
+        self.end = self.began + max(budget - 3.0 * reading, 0.5 * budget)
         """Processor time at which a repetition ends (s): its numbers are read then, as those of the run were."""
         self.whole = False
 
@@ -175,12 +175,11 @@ class _Checking:
         takes; else pieces of it.
         """
         repeating, length = self.repeating, self.repeating.length
-        cost = repeating.cost_per_second * (1.0 + DEARER)
+        cost = repeating.took * (1.0 + DEARER)
         if cost * length <= self.budget:
             return self._again(repeating.sample(repeating.whole))
         chosen = pieces(repeating, self.budget / cost)
-        before, first = clock.process_time(), repeating.sample(next(chosen))
-        repeating.pair(first, shifted=True, until=self.end)
+        before, first = clock.process_time(), self._once(next(chosen))
         now = clock.process_time()
         if first.tight and (now - before) * length / (first.piece.until - first.piece.begin) <= self.end - now:
             return self._again(repeating.sample(repeating.whole))
@@ -191,8 +190,7 @@ class _Checking:
         with the run's own tolerances, as they are cheap and tell the scatter.
         """
         repeating, before = self.repeating, clock.process_time()
-        own = repeating.cost_per_second * (sample.piece.until - sample.piece.begin)
-        until = self.end - min(LEFT_FOR_OWN * own, 0.2 * self.budget)
+        until = self.end - min(LEFT_FOR_OWN * repeating.expected(sample.piece), 0.2 * self.budget)
         for pair in range(MOST_PAIRS):
             if not repeating.pair(sample, shifted=pair > 0, until=self.end if pair else until):
                 break
@@ -200,11 +198,20 @@ class _Checking:
             if self._known(sample) or spent * (pair + 2) / (pair + 1) > self.end - before:
                 break
         for _ in range(MOST_OWN):
-            begun = clock.process_time()
-            if not sample.tight or self._known(sample) or begun + own > self.end or not repeating.own(sample, self.end):
+            left = self.end - clock.process_time()
+            if not sample.tight or self._known(sample) or repeating.expected(sample.piece) > left:
                 break
-            own = clock.process_time() - begun
+            repeating.own(sample, self.end)
         return [sample]
+
+    def _once(self, piece: Piece) -> Sample:
+        """One pair of a piece; and where the run has too few records in it, two repetitions as good as the run, which tell their
+        scatter.
+        """
+        sample = self.repeating.sample(piece)
+        if self.repeating.pair(sample, shifted=True, until=self.end) and len(sample.own) == 1:
+            self.repeating.own(sample, self.end)
+        return sample
 
     def _known(self, sample: Sample) -> bool:
         """Whether every number of a piece is known to be right, or to be wrong."""
@@ -217,8 +224,7 @@ class _Checking:
             before = clock.process_time()
             if before + spent > self.end:
                 break
-            samples.append(self.repeating.sample(piece))
-            self.repeating.pair(samples[-1], shifted=True, until=self.end)
+            samples.append(self._once(piece))
             spent = clock.process_time() - before
         return samples
 

@@ -69,6 +69,9 @@ class Repeating:
         self.whole = Piece(0, float(self.time[0]), float(self.time[0]), float(self.time[-1]))
         self.values = self._numbers(self.parts, self.whole.since, self.window)
         self._random = np.random.default_rng(20)
+        spent = self.first.stats.get("stepping_s") or self.first.stats.get("wall_s")
+        self.took = float(spent) / self.length if spent else UNKNOWN_COST
+        """Time of a second of the bearing with the run's own tolerances (s): that of the run, then of the latest repetition."""
 
     @property
     def why_not(self) -> str:
@@ -86,11 +89,9 @@ class Repeating:
         """Length of the run (s)."""
         return float(self.time[-1] - self.time[0])
 
-    @property
-    def cost_per_second(self) -> float:
-        """Time that a second of the bearing took (s); where nobody measured it, `UNKNOWN_COST`."""
-        spent = self.first.stats.get("stepping_s") or self.first.stats.get("wall_s")
-        return float(spent) / self.length if spent else UNKNOWN_COST
+    def expected(self, piece: Piece) -> float:
+        """Time that a repetition of a piece with the run's own tolerances is expected to take (s)."""
+        return self.took * (piece.until - piece.begin)
 
     def sample(self, piece: Piece) -> Sample:
         """A piece with the numbers of the run itself, if it has records enough there."""
@@ -105,7 +106,7 @@ class Repeating:
         """Repeat a piece with the run's own tolerances from a state that is moved. False where that did not come to its end, or
         not up to a processor time (s).
         """
-        found = self._repeat(sample.piece, self._own, shifted=True, until=until)
+        found = self._repeat_own(sample.piece, until)
         if found is None or not _reached(found, sample.piece):
             return False
         self._add(sample, sample.own, found)
@@ -120,7 +121,7 @@ class Repeating:
         measured of the longer one.
         """
         piece, half = sample.piece, 0.5 * (clock.process_time() + until)
-        own = self._repeat(piece, self._own, shifted=True, until=half)
+        own = self._repeat_own(piece, half)
         tight = None if own is None else self._repeat(piece, self._tight, shifted=shifted, until=until)
         if own is None or tight is None:
             return False
@@ -137,6 +138,13 @@ class Repeating:
         self._add(sample, sample.own, own)
         self._add(sample, sample.tight, tight)
         return True
+
+    def _repeat_own(self, piece: Piece, until: float) -> Mapping[str, Result] | None:
+        began = clock.process_time()
+        found = self._repeat(piece, self._own, shifted=True, until=until)
+        if found is not None and (length := float(_times(found)[-1]) - piece.begin) > 0.0:
+            self.took = (clock.process_time() - began) / length
+        return found
 
     def _add(self, sample: Sample, to: list[dict[str, float]], parts: Mapping[str, Result]) -> None:
         piece = sample.piece
