@@ -453,7 +453,10 @@ def test_a_killed_writer_leaves_a_readable_file(tmp_path: Path, seed: int, besid
     assert loaded.pocket_force.shape == (len(loaded), 12, 4)
 
 
-def test_records_wait_in_memory_only_until_flushed(tmp_path: Path, synthetic: Any, stub_scene: Any) -> None:
+def test_records_wait_in_memory_only_until_flushed(
+    tmp_path: Path, synthetic: Any, stub_scene: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("trbdyn.results.result_file.FLUSH_SECONDS", 1e3)  # however busy the machine is
     writer = ResultWriter(tmp_path / "run.h5", Part(stub_scene, synthetic.layout, synthetic.fields))
     writer.append(synthetic.records[:10])
     writer.append(synthetic.records[10])
