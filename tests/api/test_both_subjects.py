@@ -1,4 +1,6 @@
-"""What works for one bearing works for bearings on a shaft: one table of both, and of what is done with them."""
+"""What works for one bearing works for bearings on a shaft: one table of both, and of what is done with them. Those that are
+slow as a whole have tests of their own for a single bearing: test_uncertainty.py, test_optimise.py and so on.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,6 @@ SCENE = trb.cases.scene_30310(3000.0, 4930.0)
 PAIR = trb.load_assembly("pair_30310")
 SUBJECTS = {"scene": SCENE, "pair": PAIR}
 PREFIX = {"scene": "", "pair": "bearings[1]."}
-LONG_OF_A_PAIR = pytest.mark.parametrize("name", ["scene", pytest.param("pair", marks=pytest.mark.slow)])
 SHORT = trb.RunOptions(duration=5e-4, accuracy="fast", save_groups=("contacts", "torque"))
 
 
@@ -249,7 +250,7 @@ def test_the_stiffness_of_a_shaft_is_the_slope_of_its_force() -> None:
     assert found.modes(body).frequencies == pytest.approx(same.frequencies)
 
 
-@LONG_OF_A_PAIR
+@pytest.mark.slow
 def test_uncertainty(name: str) -> None:
     path = f"{PREFIX[name]}lubricant.temperature_c"
     found = trb.uncertainty(SUBJECTS[name], {path: (50.0, 70.0)}, samples=8, options=SHORT, workers=2)
@@ -289,7 +290,7 @@ def test_torque_map(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "Friction torque of the shaft" in str(found)
 
 
-@LONG_OF_A_PAIR
+@pytest.mark.parametrize("name", ["scene", pytest.param("pair", marks=pytest.mark.slow)])
 def test_sensitivity(name: str, tmp_path: Path) -> None:
     bearing = trb.Bearing.from_catalogue(bore=0.050, outside=0.110, width=0.02925, C=125e3, e=0.35, name="30310")
     subject = SUBJECTS[name].with_part(next(reversed(SUBJECTS[name].parts)), bearing=bearing)
@@ -308,7 +309,7 @@ def test_sensitivity(name: str, tmp_path: Path) -> None:
         trb.sensitivity(subject, paths=["nothing"])
 
 
-@LONG_OF_A_PAIR
+@pytest.mark.slow
 def test_the_best_design(name: str) -> None:
     """Each bearing has its own answer to whether the longer runs have settled; runs of half a millisecond have not."""
     subject, play = SUBJECTS[name], f"{PREFIX[name]}bearing.cage.play_radial"
@@ -327,7 +328,7 @@ def test_whirl_onset(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     assert float(found.data["orbit"].values[0, 0]) >= 0.0
 
 
-@LONG_OF_A_PAIR
+@pytest.mark.slow
 def test_thermal(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each bearing gives off the heat that it makes, at temperatures that a run of its own confirms. Runs are short."""
     for setting, value in {"CURVE": 3, "TURNS": (1.0,), "SETTLED": 1.0, "CLOSE": 0.1}.items():
@@ -352,7 +353,7 @@ def test_thermal(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
         trb.thermal(SUBJECTS[name], {"nothing": paths})  # type: ignore[arg-type]
 
 
-@LONG_OF_A_PAIR
+@pytest.mark.slow
 def test_a_plan(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Few candidates, so that it takes seconds; what is proposed runs, and has the averages that were promised."""
     chosen = tuple(
@@ -406,7 +407,7 @@ def test_a_base_builds_what_it_was_made_of(name: str) -> None:
 
 
 @pytest.mark.usefixtures("drawn_only")
-@LONG_OF_A_PAIR
+@pytest.mark.slow
 def test_the_command_line_report_and_view(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

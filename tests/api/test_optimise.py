@@ -64,7 +64,7 @@ def test_a_limit_a_whole_number_and_designs_that_cannot_be_run() -> None:
         values[unit[:, 2] > 0.8] = np.nan
         return values
 
-    unit, values = searched(results, aims, 3, 5, rounds=4)
+    unit, values = searched(results, aims, 3, 5)
     good = np.isfinite(values).all(axis=1) & (values[:, 1] <= 0.0)
     best = unit[np.where(good, values[:, 0], np.inf).argmin()]
     assert best[0] * 11.0 == pytest.approx(7.5)
@@ -127,7 +127,7 @@ def whirls_later(study: Any, **_: Any) -> xarray.Dataset:
 def test_only_designs_that_longer_runs_confirm_are_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("trbdyn.extras.design.optimise.run_study", whirls_later)
     change = {RADIUS: (5.0, 100.0)}
-    short = trb.optimise(SCENE, change, TORQUE, designs=24, confirm=1.0)
+    short = trb.optimise(SCENE, change, TORQUE, designs=12, confirm=1.0)
     assert short.chosen.inputs[RADIUS] > 90.0
     assert not any(one.confirmed for one in short.designs)
     found = trb.optimise(SCENE, change, TORQUE, designs=28)
@@ -147,7 +147,7 @@ def test_a_longer_run_that_fails_refuses_the_design(monkeypatch: pytest.MonkeyPa
         return data
 
     monkeypatch.setattr("trbdyn.extras.design.optimise.run_study", fails_later)
-    found = trb.optimise(SCENE, {RADIUS: (5.0, 100.0)}, TORQUE, designs=24)
+    found = trb.optimise(SCENE, {RADIUS: (5.0, 100.0)}, TORQUE, designs=16)
     assert 40.0 < found.chosen.inputs[RADIUS] <= 60.0
     assert set(found.refused) == {"the cage is torn"}
 

@@ -284,6 +284,7 @@ def test_a_run_begins_only_where_the_disk_has_room_for_a_record(tmp_path: Path) 
     assert len(sim.run(**how)) > 1
 
 
+@pytest.mark.usefixtures("drawn_only")
 @pytest.mark.parametrize("name", sorted(WRITERS))
 def test_a_file_is_replaced_only_if_asked_and_stays_whole(name: str, run_file: Path, tmp_path: Path) -> None:
     ending, call = WRITERS[name]
@@ -401,6 +402,7 @@ def test_a_command_replaces_only_if_asked(
         Path(there).unlink()
 
 
+@pytest.mark.usefixtures("drawn_only")
 @pytest.mark.parametrize("words", [["report"], ["view", "--no-open"]])
 @pytest.mark.parametrize("again", [[], ["--overwrite"]])
 def test_a_report_never_replaces_its_result(

@@ -311,7 +311,7 @@ class TestCombinedLoads:
     def test_heavy_loads_along_the_axes_are_found(self, rig: Bearing, direction: float) -> None:
         """Some of them are found only where the load is raised from a smaller one, in whichever direction it acts."""
         limit = most_radial_load(Scene(rig, speed_rpm=3000.0, axial_load=8000.0), 8000.0)
-        for share in (0.95, 0.98, 0.99, 0.995):
+        for share in (0.98, 0.995):
             radial = share * limit * math.cos(math.radians(15.0))
             found = simulate(rig, 3000.0, 8000.0, radial, radial_direction_deg=direction).equilibrium
             assert found.residual < 1e-4 * radial
