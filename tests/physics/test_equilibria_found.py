@@ -326,7 +326,8 @@ def test_a_cylindrical_bearing_follows_a_load_that_nearly_goes(least: float, axi
     """Rollers on ribs centre the ring under an axial load; without any, a load that goes leaves it anywhere in its clearance."""
     load = trb.History.step((0.004, 0.009), (3000.0, least, 3000.0), rise=8e-4)
     place = None if axial_load else (None, None, 0.0)
-    scene = trb.cases.scene_nj210().replace(
+    effects = trb.Effects.standard().replace(n_slices=4)
+    scene = trb.cases.scene_nj210(effects=effects).replace(
         axial_load=axial_load, displacement=place, ring="follows", radial_load=load, speed_rpm=300.0
     )
     motion, _ = ring_motion(normal_contacts(scene), scene)

@@ -70,7 +70,7 @@ if __name__ == "__main__":
     whole = trb.resume(cut)
     assert whole.success and whole.time[-1] == 4e-3
 
-    trb.report(whole, folder / "report.html", pictures=["cage_locus"], check_budget_s=0.1)
+    trb.report(whole, folder / "report.html", pictures=["cage_locus"])
     options = study.RunOptions(duration=5e-4, save_every=1e-4)
     cases = study.grid(scene, {"scene.speed_rpm": [1000.0, 3000.0]}, options, fixed={"effects.n_slices": 4})
     data = study.run(cases, folder / "study", executor="processes", workers=2)
