@@ -49,6 +49,7 @@ typedef struct trb_workspace {
   struct trb_uneven     *uneven;                  /* and of surfaces off their true form; NULL: the bearing has none */
   struct trb_law_slopes *laws;                    /* of every roller's raceways: slopes of their laws; NULL: they are not kept */
   trb_laws_use           laws_use;                /* of `laws`, where there are any */
+  struct trb_races_held *held;                    /* raceways as they were looked at; NULL: nobody looks */
   int                    variant;                 /* kernel variant, index into trb_kernel_variants */
   trb_batch              batches[TRB_MOST_PAIRS]; /* pairs with a roller that are on */
   int                    n_batches;
@@ -59,6 +60,8 @@ typedef struct trb_workspace {
 
 /* Makes the workspace keep slopes of the laws of all raceway contacts, in this memory, where the scene's laws have them. */
 void trb_law_slopes_create(const trb_model *m, trb_memory *memory, trb_workspace *work);
+/* Makes the workspace keep what is looked at and followed, in this memory. */
+void trb_looks_create(const trb_model *m, trb_memory *memory, trb_workspace *work);
 
 /* The pairs of a batch, all chosen rollers at once; added to the loads. detail may be NULL. */
 typedef void trb_pair_evaluate(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
@@ -67,6 +70,10 @@ typedef void trb_pair_evaluate(const trb_model *m, const trb_instant *at, const 
  * may change. Loads are scratch. */
 typedef void trb_pair_look(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
                            trb_detail *detail, double share);
+/* The same for one roller after such a look, out of its pose and the ring's, into the detail; gives 0, whatever it wrote, where a value may be off by more than the
+ * share. */
+typedef int trb_pair_follow(const trb_model *m, const trb_instant *at, const trb_pair *pair, int roller, const trb_workspace *work,
+                            double share, trb_detail *detail);
 /* Load between one roller and the other body of a fast pair. The load is written only where they may touch, or if the detail asks for
  * interferences; the same holds for the slopes, which may be NULL. Forces are added to those in the detail. */
 typedef trb_gaps trb_pair_touch(const trb_model *m, const trb_pair *pair, const trb_instant *at, int roller, trb_counters *counters,
@@ -113,7 +120,8 @@ typedef struct trb_pair_kind {
   /* of slow pairs */
   /* interference out of the poses alone, the ring as the roller sees it, m; negative: the gap; NULL: it takes an evaluation */
   double (*depth)(const trb_pair *pair, const trb_roller_pose *roller, const trb_ring_pose *ring);
-  trb_pair_look *look;
+  trb_pair_look   *look;
+  trb_pair_follow *follow; /* NULL: what was looked at holds as far as the look says */
   /* whether surfaces may be off their true form where a roller is; azimuth: of the roller, turned: of the ring, spin: of the roller, rad; NULL:
    * they never are */
   int (*uneven)(const trb_model *m, const trb_pair *pair, int roller, double azimuth, double turned, double spin);

@@ -4,6 +4,7 @@
 
 #include "contact/kernels.h"
 #include "contact/pair.h"
+#include "contact/race_look.h"
 #include "contact/uneven.h"
 #include "laws/line_contact.h"
 
@@ -65,9 +66,8 @@ static void add_output(const trb_race_output *out, const trb_pair *pair, int row
   trb_add_load(pair, &load, loads);
 }
 
-/* One contact alone; its nodes are the first lanes of the workspace, if it is loaded. */
-static void raceway_of(const trb_model *m, const trb_instant *at, int roller, const trb_pair *pair, trb_workspace *work,
-                       trb_race_output *output)
+void trb_raceway_of(const trb_model *m, const trb_instant *at, int roller, const trb_pair *pair, trb_workspace *work,
+                    trb_race_output *output)
 {
   trb_race_input input = race_input(m, at, roller, pair, work);
   if (at->spin != NULL) add_uneven(m, at, roller, 0, work, &input);
@@ -171,41 +171,6 @@ static void arms_of(const trb_model *m, const trb_pair *pair, trb_arms *arms)
   *arms = trb_arms_on_cone(m, race, -chain, chain, fabs(race->place + m->geometry.roller_mass_offset * m->axis_cosine) + chain);
 }
 
-static void look_at_race(const trb_model *m, const trb_instant *at, int roller, const trb_pair *pair, trb_workspace *work, double share,
-                         trb_contact *look)
-{
-  const trb_lanes *l = work->lanes;
-  double           parameter = 0.0, slope = 0.0, damping = 0.0, slowest = INFINITY;
-  trb_race_output  out;
-  *look = (trb_contact){.way = -1.0};
-  raceway_of(m, at, roller, pair, work, &out);
-  for (int k = 0; out.loaded && k < m->n_nodes; k++) {
-    const double q = l->load[k];
-    if (!(q > 0.0)) continue;
-    look->load += q;
-    look->pressure = fmax(look->pressure, l->pressure[k]);
-    slope += TRB_PALMGREN_EXPONENT * q / l->interference[k];
-    damping += q * trb_contact_damping(m, l->interference[k]);
-    slowest = fmin(slowest, l->mean_speed[k]);
-    if (m->film) parameter += q * l->film_parameter[k];
-  }
-  look->speed = trb_look_speed(m, slowest, look->load > 0.0 ? damping / look->load : 0.0, share);
-  if (!(look->load > 0.0)) return;
-  look->way = share * look->load / slope;
-  look->film_parameter = parameter / look->load;
-}
-
-static void look_at_races(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
-                          trb_detail *detail, double share)
-{
-  (void)loads;
-  for (int k = 0; k < at->n; k++)
-    for (int i = 0; i < batch->n; i++) {
-      const int roller = at->chosen[k];
-      look_at_race(m, at, roller, batch->pairs[i], work, share, &trb_pair_contacts(m, batch->pairs[i], detail)[roller]);
-    }
-}
-
 /* Its own parameters: trb_race_nodes. */
 const trb_pair_kind trb_pair_raceway = {.name = "flank on a raceway",
                                         .shape = {TRB_SHAPE_FLANK, TRB_SHAPE_RACE},
@@ -215,6 +180,7 @@ const trb_pair_kind trb_pair_raceway = {.name = "flank on a raceway",
                                         .contact = TRB_CONTACT_LINE,
                                         .evaluate = evaluate,
                                         .arms = arms_of,
-                                        .look = look_at_races,
+                                        .look = trb_races_look,
+                                        .follow = trb_race_follow,
                                         .uneven = is_uneven,
                                         .change = change_of};

@@ -1,7 +1,7 @@
 /* What peaks are made of: all loads, pressures, film parameters, skews and spacings at a state. Friction is left out, as none of them
- * needs it. A contact with a ring is evaluated again where its load or its film's entrainment speed may have changed by TRB_PEAK_SHARE
- * since it was evaluated last (motion/bound.h), and always while the drive moves a ring or changes its speed; pockets are evaluated always, unless they
- * are proven clear. */
+ * needs it. A contact with a ring keeps its values while its load or its film's entrainment speed cannot have changed by TRB_PEAK_SHARE since it was evaluated
+ * last (motion/bound.h); where its kind has slopes (trb_pair_follow), they follow the motion beyond that. Otherwise it is evaluated again, and so are bounds while
+ * the drive moves a ring or changes its speed. Pockets are evaluated always, unless they are proven clear. */
 #ifndef TRB_MOTION_PEAK_LOOK_H
 #define TRB_MOTION_PEAK_LOOK_H
 

@@ -18,6 +18,8 @@ SPAN = 0.06
 EVERY = [1e-3, 2e-4, 1e-4, 2e-5]
 SHARE = 2e-3
 """What a held load of a ring's contact may be off; TRB_PEAK_SHARE of the core."""
+FOLLOWED = 1e-3
+"""The same of raceways, whose values follow slopes."""
 
 
 def whirling() -> trb.Scene:
@@ -101,6 +103,8 @@ def test_means_do_not_alias(runs: dict[float, Result]) -> None:
 SCENES = {
     "axial": {},
     "radial": {"radial_load": 2000.0},
+    "light": {"axial_load": 300.0},
+    "two slices": {"effects": Effects.standard().replace(n_slices=2)},
     "tilted": {"misalignment_x": 1e-3},
     "dry": {
         "effects": Effects.standard().replace(lubrication="dry", rolling_resistance=False, rolling_pressure_force=False)
@@ -151,13 +155,16 @@ def test_step_by_step(name: str) -> None:
             found[f"{quantity}_mean"], mean, rtol=SHARE, atol=SHARE * size + 1e-300, err_msg=quantity
         )
     for quantity in ("outer_load", "inner_load", "rib_load", "outer_pressure", "inner_pressure", "rib_pressure"):
+        rtol = SHARE if quantity.startswith("rib") else FOLLOWED
         np.testing.assert_allclose(
-            found[f"{quantity}_peak"], records[quantity].max(axis=0), rtol=SHARE, err_msg=quantity
+            found[f"{quantity}_peak"], records[quantity].max(axis=0), rtol=rtol, err_msg=quantity
         )
     for side in ("outer", "inner", "rib"):
         loaded = np.where(records[f"{side}_load"] > 0.0, records[f"{side}_film_parameter"], np.inf).min(axis=0)
         wanted = np.where(np.isfinite(loaded) & scene.effects.films, loaded, np.nan)
-        np.testing.assert_allclose(found[f"{side}_film_parameter_min"], wanted, rtol=SHARE, err_msg=side)
+        np.testing.assert_allclose(
+            found[f"{side}_film_parameter_min"], wanted, rtol=SHARE if side == "rib" else FOLLOWED, err_msg=side
+        )
 
 
 def test_rollers_thrown_at_the_front_rib_have_their_peaks() -> None:
