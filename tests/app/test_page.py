@@ -250,7 +250,7 @@ def test_two_tabs_show_the_same(user: Any, other_tab: Any, server: Any) -> None:
     assert user.browser.errors == other_tab.browser.errors == []
 
 
-@pytest.mark.parametrize("width", [480, 1280])
+@pytest.mark.parametrize("width", [480, pytest.param(1280, marks=pytest.mark.slow)])
 def test_nothing_is_wider_than_the_page(user: Any, shared: Any, width: int) -> None:
     browser = user.browser
     browser.call("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=width < 500)

@@ -47,7 +47,7 @@ def planar() -> Any:
     return planar
 
 
-@pytest.mark.parametrize("froude", [0.1, 0.2, 0.437])
+@pytest.mark.parametrize("froude", [pytest.param(0.1, marks=pytest.mark.slow), 0.2, 0.437])
 def test_planar_model_follows_the_growth_law(planar: Any, froude: float) -> None:
     cage = planar.Cage(friction=0.0, roller_mass=0.0)
     rate = planar.growth(planar.simulate(np.array([0.1]), froude, 8, 0.2, cage))

@@ -209,10 +209,11 @@ def test_an_explicit_method_agrees_over_pits(on: On) -> None:
     ("on", "line"),
     [
         ("outer", "rollers over the outer ring"),
-        pytest.param("inner", "rollers over the inner ring", marks=pytest.mark.slow),
-        pytest.param("roller", "spin of a roller, twice", marks=pytest.mark.slow),
+        ("inner", "rollers over the inner ring"),
+        ("roller", "spin of a roller, twice"),
     ],
 )
+@pytest.mark.slow
 def test_a_pit_shows_at_its_order(on: On, line: str) -> None:
     """The strongest lines of the axial vibration are multiples of the order, within 0.1 orders of the shaft; without the pit they
     are a twentieth as strong."""

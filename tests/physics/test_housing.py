@@ -40,7 +40,7 @@ def strongest(values: Array, step: float, near: float) -> float:
     return float(frequencies[inside][np.argmax(spectrum[inside])])
 
 
-@pytest.mark.parametrize(("times", "tolerance"), [(7.0, 4e-3), (1.0, 1.6e-2)])
+@pytest.mark.parametrize(("times", "tolerance"), [pytest.param(7.0, 4e-3, marks=pytest.mark.slow), (1.0, 1.6e-2)])
 def test_vibrations_have_the_frequencies_of_springs_and_bearing(times: float, tolerance: float) -> None:
     """A housing vibrates as a shaft of its mass on the same springs would: the bearing knows how far its rings are apart.
 

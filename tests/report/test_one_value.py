@@ -35,7 +35,7 @@ def scenes() -> dict[str, Any]:
 
 @pytest.fixture(scope="module", params=["30310", "NU 210", "pair"])
 def result(request: pytest.FixtureRequest) -> Any:
-    return trb.Simulation(scenes()[request.param], accuracy="fast").run(revolutions=3.0)
+    return trb.Simulation(scenes()[request.param], accuracy="fast").run(revolutions=1.5)
 
 
 def values_of(numbers: Mapping[str, Any]) -> Iterator[float]:

@@ -161,6 +161,7 @@ def test_one_run_one_writer(tmp_path: Path) -> None:
     assert [place.name for place in tmp_path.iterdir()] == ["run.h5"]
 
 
+@pytest.mark.slow
 def test_the_command_line_resumes(tmp_path: Path, uninterrupted: trb.Result) -> None:
     path = tmp_path / "run.h5"
     process = start(RUN, path)
