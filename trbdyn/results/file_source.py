@@ -249,10 +249,12 @@ class FileSource(Source):
     def _read_peaks(self, file: h5py.Group) -> dict[str, Array]:
         """Peaks of the whole run; none in files of runs that kept none."""
         row, found, at = np.asarray(read_text_or_state(_run(file), "peaks"), dtype=float), {}, 0
-        for name in (entry.name for entry in self.fields if entry.group == peak_table.GROUP) if row.size else ():
-            shape = file[name].shape[1:]
-            size = int(np.prod(shape))
-            found[name] = row[at : at + size].reshape(shape)
+        kept = [entry for entry in self.fields if entry.group == peak_table.GROUP] if row.size else []
+        sizes = {dim: len(file[dim]) for dim in {dim for entry in kept for dim in entry.dims}}
+        for entry in kept:
+            shape = tuple(sizes[dim] for dim in entry.dims)
+            size = math.prod(shape)
+            found[entry.name] = row[at : at + size].reshape(shape)
             at += size
         if at != row.size:
             raise FileError(f"{self.path}: the file is damaged (its peaks of the whole run do not fit its fields)")
