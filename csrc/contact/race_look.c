@@ -146,7 +146,7 @@ static void hold_film(const trb_model *m, const trb_lanes *l, const double *shar
   h->slip = 2.0 * by_slip;
   h->top = l->pressure[top];
   h->log_speed = log_u;
-  h->log_thermal = now;
+  h->heat = exp(now);
 }
 
 /* The longest way along which the load stays within a share of a straight line: what its curve adds at a node that carries, and all of the load at one that
@@ -264,8 +264,7 @@ static int follow_film(const trb_model *m, const trb_race_held *h, const trb_rac
   const double u = h->by_speed, q = h->by_load;
   if (!(fabs(by_speed) <= h->faster && fabs(by_load) <= MOST_CHANGE)) return 0;
 
-  const double heat =
-      fabs(slip) <= h->slip ? 1.0 + h->by_slip * slip : exp(log(thermal_of(m, h->top, h->log_speed, now->slide_roll)) - h->log_thermal);
+  const double heat = fabs(slip) <= h->slip ? 1.0 + h->by_slip * slip : thermal_of(m, h->top, h->log_speed, now->slide_roll) / h->heat;
   const double way = h->by_way[0] * moved[0] + h->by_way[1] * moved[1] + h->by_way[2] * moved[2] + 0.5 * q * (q - 1.0) * by_load * by_load;
   const double rate = h->by_rate[0] * (now->rate[0] - h->motion.rate[0]) + h->by_rate[1] * (now->rate[1] - h->motion.rate[1]);
 

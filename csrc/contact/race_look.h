@@ -20,19 +20,19 @@ typedef struct trb_race_motion {
 typedef struct trb_race_held {
   trb_race_motion motion;
   double          load, pressure, film_parameter;
-  double          deepest;                     /* largest interference, m; negative: the gap */
-  double          elastic;                     /* load without damping, N */
-  double          stiffness[TRB_N_STATIONS];   /* slope of the load over the interference at each station, N/m */
-  double          damping[2];                  /* slope of the load over the rate at the first and at the last one, N s/m */
-  double          both;                        /* slope of the damping over the interference, N s/m2 */
-  double          way;                         /* by which the interference may change, m */
-  double          by_way[TRB_N_STATIONS];      /* slope of the logarithm of the film over the interference at each station, 1/m */
-  double          by_rate[2];                  /* and over the rate at the first and at the last one, s/m */
-  double          by_speed, by_load, by_slip;  /* slopes of the logarithm of the film over those of speed and load, and over slide_roll */
-  double          slip;                        /* by which slide_roll may change along its slope */
-  double          top, log_speed, log_thermal; /* largest pressure, logarithms of speed and of the factor of heat */
-  double          faster;                      /* relative change of speed that the film may follow */
-  double         *node;                        /* pressures, then one over the interference, of n_lanes each */
+  double          deepest;                    /* largest interference, m; negative: the gap */
+  double          elastic;                    /* load without damping, N */
+  double          stiffness[TRB_N_STATIONS];  /* slope of the load over the interference at each station, N/m */
+  double          damping[2];                 /* slope of the load over the rate at the first and at the last one, N s/m */
+  double          both;                       /* slope of the damping over the interference, N s/m2 */
+  double          way;                        /* by which the interference may change, m */
+  double          by_way[TRB_N_STATIONS];     /* slope of the logarithm of the film over the interference at each station, 1/m */
+  double          by_rate[2];                 /* and over the rate at the first and at the last one, s/m */
+  double          by_speed, by_load, by_slip; /* slopes of the logarithm of the film over those of speed and load, and over slide_roll */
+  double          slip;                       /* by which slide_roll may change along its slope */
+  double          top, log_speed, heat;       /* largest pressure, logarithm of the speed, and the factor of heat */
+  double          faster;                     /* relative change of speed that the film may follow */
+  double         *node;                       /* pressures, then one over the interference, of n_lanes each */
 } trb_race_held;
 
 typedef struct trb_races_held {
