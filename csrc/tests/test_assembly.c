@@ -306,6 +306,62 @@ static void test_steps(int housed)
   close_pair(p);
 }
 
+/* Factors of the tolerances of both bearings, and the weights that follow, at a state at which the bounds of gaps are known. */
+static void look_at(trb_integrator *it, const double *y, double step, double *weights)
+{
+  memcpy(it->y, y, (size_t)it->n * sizeof *it->y);
+  CHECK(trb_integrator_rates(it, it->time, it->y, weights) == 0);
+  for (int k = 0; k < N; k++) {
+    const trb_dynamics *d = it->members[k].dynamics;
+    trb_impacts_forget(d->model, &it->members[k].impacts);
+    trb_integrator_look(it, k, step, d->everyone, d->model->n_rollers);
+  }
+  trb_integrator_weights(it, it->y, weights);
+}
+
+/* A cage that is about to hit its rollers makes their tolerances smaller, and its own, but no others: not those of the other bearing, and not the
+ * shaft's, which hits nothing. What bearings ask for of the shaft, of which the rings are parts, holds for it: the smaller of both. */
+static void test_tolerances(void)
+{
+  const double            fast = 10.0, step = 1e-5; /* m/s, s: gaps close within some steps at this speed */
+  trb_settings            settings = rig_settings();
+  pair_of                *p = open_shaft(0);
+  const trb_system *const systems[N] = {p->alone[0], p->alone[1]};
+  const trb_motion *const motions[N] = {p->motion[0], p->motion[1]};
+  const trb_system *const members = p->together.members;
+  const int               size = trb_state_size(&members[0]), shaft = members[0].bodies[TRB_BODY_INNER_RING].first;
+  trb_simulation         *s;
+  double                  before[ROOM], now[ROOM];
+  settings.impact_share = 1e-4, settings.atol_velocity = 1e-2; /* so that even this impact needs smaller tolerances */
+  if (!CHECK(trb_simulation_create(systems, motions, N, "bdf", "", &settings, 0.0, p->y, size, &s, NULL) == TRB_OK)) return;
+  trb_integrator *it = &s->integrator;
+  look_at(it, p->y, step, before);
+  for (int hit = 0; hit < N; hit++) {
+    const int z = systems[hit]->model->n_rollers, roller = trb_state_roller(&members[hit], 0),
+              cage = members[hit].bodies[TRB_BODY_CAGE].first;
+    int       finer = 0;
+    double    y[ROOM];
+    memcpy(y, p->y, (size_t)size * sizeof *y);
+    y[cage + TRB_CAGE_v_x] += fast;
+    look_at(it, y, step, now);
+    CHECK(it->members[hit].impacts.factor[z + TRB_BODY_CAGE] < 1.0);
+    for (int i = 0; i < size; i++) {
+      const int of_roller = i >= roller && i < roller + z * TRB_NR, of_cage = i >= cage && i < cage + TRB_CAGE_SIZE;
+      finer += of_roller && now[i] > before[i];
+      CHECK(of_roller || of_cage || now[i] == before[i]);
+    }
+    CHECK(finer > 0);
+  }
+  look_at(it, p->y, step, before);
+  for (int k = N - 1; k >= 0; k--) {
+    it->members[k].impacts.factor[systems[k]->model->n_rollers + TRB_BODY_INNER_RING] = k == 0 ? 0.25 : 0.5;
+    trb_integrator_weights(it, it->y, now);
+    for (int i = 0; i < size; i++) CHECK(now[i] == (i >= shaft && i < shaft + TRB_FREE_RING_SIZE ? (k == 0 ? 4.0 : 2.0) : 1.0) * before[i]);
+  }
+  trb_simulation_free(s);
+  close_pair(p);
+}
+
 static void test_refused(int housed)
 {
   trb_params        p[N] = {on_shaft(1, housed), on_shaft(0, housed)};
@@ -329,6 +385,7 @@ static void test_refused(int housed)
 int main(void)
 {
   test_apart();
+  test_tolerances();
   for (int housed = 0; housed < 2; housed++) {
     test_shaft(housed);
     test_steps(housed);
