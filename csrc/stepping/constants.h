@@ -130,7 +130,8 @@ static const double trb_half_step = 0.5;
 
 /* A roller of the hub's team leaves it after this number of steps in which it has touched nothing, as it mostly comes back soon after a hit. */
 enum { TRB_STEPS_UNTIL_LEAVES = 30 };
-/* Skew, tilt and the spins that belong to them have this share of their error in a step of rollers that touch the hub. They swing fast there; with it
+/* Skew, tilt and the spins that belong to them have this share of their error in a step of rollers that touch the hub, with steps of each body and
+ * of several bearings. They swing fast there; with it
  * forces in pockets are as exact as with one step for all bodies, and below they are not (docs/theory/multirate.md#what-limits-a-step). */
 static const double trb_swing_share = 0.5;
 

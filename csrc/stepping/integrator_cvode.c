@@ -23,6 +23,7 @@ typedef struct bdf {
   trb_jacobian      *jacobians[TRB_MOST_MEMBERS];
   trb_statistics     before;    /* totals up to the last restart */
   double             smallest;  /* smallest step, s */
+  double            *swings;    /* bearings together: of each roller, see trb_body_entries */
   double             filled_at; /* end of the last step when the Jacobian was last evaluated, s */
 } bdf;
 
@@ -134,7 +135,13 @@ static trb_status bdf_create(trb_integrator *it, trb_message *message)
   self->filled_at = -INFINITY;
   trb_status status = trb_sundials_open(&self->sundials, message);
   if (status != TRB_OK) return status;
-  const trb_body_entries entries = trb_body_entries_of(it->assembly);
+  trb_body_entries entries = trb_body_entries_of(it->assembly);
+  if (it->assembly->n > 1) {
+    self->swings = trb_zeros((size_t)n_rollers, sizeof *self->swings);
+    if (self->swings == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the integrator");
+    for (int j = 0; j < n_rollers; j++) self->swings[j] = 1.0;
+    entries.swings = self->swings;
+  }
   self->y = trb_vector_over(it->y, it->n, &entries, variant, self->sundials.context);
   if (self->y != NULL) self->scratch = N_VClone(self->y);
   self->matrix = trb_arrow_matrix(n_rollers, hub_width, self->sundials.context);
@@ -160,6 +167,7 @@ static void bdf_free(trb_integrator *it)
   if (self->scratch != NULL) N_VDestroy(self->scratch);
   if (self->y != NULL) N_VDestroy(self->y);
   trb_sundials_close(&self->sundials);
+  free(self->swings);
   for (int k = 0; k < TRB_MOST_MEMBERS; k++) trb_jacobian_free(self->jacobians[k]);
   free(self);
   it->self = NULL;
@@ -206,6 +214,15 @@ static trb_status bdf_restart(trb_integrator *it, trb_message *message)
   return TRB_OK;
 }
 
+/* Rollers that touch something or may do so soon swing as those of the cage's team do with steps of each body. */
+static void let_swing(const trb_integrator *it, int member)
+{
+  const bdf        *self = it->self;
+  const trb_system *system = &it->assembly->members[member];
+  for (int j = 0; self->swings != NULL && j < system->model->n_rollers; j++)
+    self->swings[system->layout.leaf + j] = isfinite(it->members[member].impacts.speed[j]) ? trb_swing_share : 1.0;
+}
+
 static trb_status bdf_step(trb_integrator *it, trb_message *message)
 {
   bdf        *self = it->self;
@@ -217,6 +234,7 @@ static trb_status bdf_step(trb_integrator *it, trb_message *message)
   for (int k = 0; k < it->assembly->n; k++) {
     const trb_dynamics *d = it->members[k].dynamics;
     trb_integrator_look(it, k, step, d->everyone, d->model->n_rollers);
+    let_swing(it, k);
   }
   const int flag = CVode(self->memory, it->time + 1.0, self->y, &reached, CV_ONE_STEP);
   if (flag < 0) return trb_fail(message, TRB_ERR_STEP, "CVODE stopped (%d): %s", flag, self->sundials.text);

@@ -47,6 +47,16 @@ static double mean_square(const double *value, const double *weight, int n)
   return sum / n;
 }
 
+/* The same of a roller whose skew and tilt swing fast, with the spins that belong to them: these count by a share. */
+static double swinging(const double *value, const double *weight, double share)
+{
+  const int swings[] = {TRB_ROLLER_skew, TRB_ROLLER_tilt, TRB_ROLLER_omega_n, TRB_ROLLER_omega_t};
+  double    counts[TRB_NR];
+  memcpy(counts, weight, sizeof counts);
+  for (size_t i = 0; i < sizeof swings / sizeof *swings; i++) counts[swings[i]] *= share;
+  return sum_squares(value, counts, TRB_NR);
+}
+
 /* The larger one; not a number (NaN) if either is none. */
 static double larger(double a, double b) { return a >= b || isnan(a) ? a : b; }
 
@@ -64,8 +74,11 @@ static sunrealtype norm_of_bodies(N_Vector x, N_Vector w)
     largest = larger(largest, mean_square(value + at, weight + at, entries.size[b]));
     at += entries.size[b];
   }
-  for (int j = 0; j < entries.n_rollers; j++)
-    largest = larger(largest, sum_squares(value + j * TRB_NR, weight + j * TRB_NR, TRB_NR) / TRB_NR);
+  for (int j = 0; j < entries.n_rollers; j++) {
+    const double *own = value + j * TRB_NR, *per = weight + j * TRB_NR;
+    const double  share = entries.swings == NULL ? 1.0 : entries.swings[j];
+    largest = larger(largest, (share == 1.0 ? sum_squares(own, per, TRB_NR) : swinging(own, per, share)) / TRB_NR);
+  }
   return sqrt(largest);
 }
 

@@ -9,9 +9,10 @@
 
 /* Entries of a state that control the step: those of the rollers, then those of each body of the hub. */
 typedef struct trb_body_entries {
-  int n_rollers;
-  int n_bodies;                                 /* of the hub */
-  int size[TRB_MOST_MEMBERS * TRB_MOST_BODIES]; /* of each */
+  int           n_rollers;
+  int           n_bodies;                                 /* of the hub */
+  int           size[TRB_MOST_MEMBERS * TRB_MOST_BODIES]; /* of each */
+  const double *swings; /* of each roller: share that skew, tilt and their spins have of their error; NULL: they count whole */
 } trb_body_entries;
 
 /* Length of the memory behind the entries. */

@@ -250,11 +250,13 @@ static void test_norm(void)
   const trb_system *alone = s.system;
   trb_assembly      assembly;
   if (!CHECK(trb_assembly_make(&alone, 1, &assembly, NULL) == TRB_OK)) return;
-  const trb_body_entries entries = trb_body_entries_of(&assembly);
+  trb_body_entries entries = trb_body_entries_of(&assembly);
+  double           swings[ROOM];
   if (!CHECK(trb_sundials_open(&sundials, NULL) == TRB_OK)) return;
   for (int variant = 0; variant < trb_n_kernel_variants; variant++) {
     if (!trb_kernel_runs(variant)) continue;
     for (int i = 0; i < n; i++) values[i] = 0.0, weights[i] = 2.0;
+    entries.swings = NULL;
     N_Vector v = trb_vector_over(values, n, &entries, variant, sundials.context);
     N_Vector w = trb_vector_over(weights, n, &entries, variant, sundials.context), clone = N_VClone(v);
     values[at + Z] = 3.0, values[at + V_Z] = 4.0;
@@ -274,6 +276,20 @@ static void test_norm(void)
       values[places[i]] = was;
     }
     N_VDestroy(clone);
+    N_VDestroy(v);
+    N_VDestroy(w);
+    /* skew and tilt of rollers that swing count by a share, with their spins, and nothing else does */
+    for (int i = 0; i < n; i++) values[i] = 0.0;
+    for (int j = 0; j < alone->model->n_rollers; j++) swings[j] = j == 1 ? 0.25 : 1.0;
+    entries.swings = swings;
+    v = trb_vector_over(values, n, &entries, variant, sundials.context);
+    w = trb_vector_over(weights, n, &entries, variant, sundials.context);
+    for (int i = 0; i < 2 * TRB_NR; i++) {
+      const int c = i % TRB_NR, swing = c == TRB_ROLLER_skew || c == TRB_ROLLER_tilt || c == TRB_ROLLER_omega_n || c == TRB_ROLLER_omega_t;
+      values[i] = 8.0;
+      CHECK_NEAR(N_VWrmsNorm(v, w), (swing && i >= TRB_NR ? 4.0 : 16.0) / sqrt(TRB_NR), 1e-13);
+      values[i] = 0.0;
+    }
     N_VDestroy(v);
     N_VDestroy(w);
   }
