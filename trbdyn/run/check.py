@@ -239,17 +239,20 @@ class _Checking:
     def _note(self, samples: Sequence[Sample], covered: float, spent: float) -> str:
         if not samples:
             return "Nothing could be checked: a repetition with tighter tolerances failed, or the time was too short for it."
+        unseen = ""
         if self.whole:
             what = f"the whole run was repeated, {_times(len(samples[0].tight))}"
         elif len(samples) == 1 and samples[0].piece.begin == self.repeating.whole.begin:
             what = f"the first {100.0 * covered:.2g} % of the run were repeated, {_times(len(samples[0].tight))}"
+            unseen = " what follows them (a larger budget_s covers more);"
         else:
             count = "one piece was" if len(samples) == 1 else f"{len(samples)} pieces were"
             what = f"{count} repeated from a state of the run, {100.0 * covered:.2g} % of it in all"
-        older = "" if self.whole else " what the tolerances did before a piece began;"
+            unseen = " what the tolerances did before a piece began;"
         return (
             f"Measured at this run: {what}, with its own tolerances and with those of 'reference' or a tenth of them, in "
-            f"{spent:.2g} s of processor time that are no part of the run's. Not checked:{older} {SLOW}; and errors of the model."
+            f"{spent:.2g} s of processor time that are no part of the run's. Not checked:{unseen} {SLOW}; and "
+            "errors of the model."
         )
 
 
