@@ -307,9 +307,8 @@ def test_a_ring_that_leaves_its_bearing_is_said() -> None:
         result = Simulation(scene_of(ROTOR, effects=effects)).run(duration=0.05, save_every=1e-3)
     assert not result.success
     assert "free inner ring is" in result.message
-    assert (
-        np.max(np.abs(result["ring_position"])) < 20e-3
-    )  # it falls by more than a millimetre from one look to the next
+    # a run is looked at after each 2000 steps, in which the ring falls by some 40 mm here
+    assert np.max(np.abs(result["ring_position"])) < 60e-3
 
 
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {

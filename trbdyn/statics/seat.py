@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Final
@@ -179,7 +180,15 @@ def seat_alone(scene: Scene, instruction_set: str = "") -> Seated:
     """What the core takes of one bearing: its ring is held, follows its load, or is free. The latest ones are kept, as a run, its
     summary and its check begin in one equilibrium; not where a file is read, which may change.
     """
-    return (_seat_alone if scene.modes_from_file else _kept_alone)(scene, instruction_set)
+    if scene.modes_from_file:
+        return _seat_alone(scene, instruction_set)
+    return apart(_kept_alone(scene, instruction_set))
+
+
+def apart(kept: Seated) -> Seated:
+    """The same with arrays of its own for what a simulation shows of its start."""
+    bearings = tuple(replace(one, equilibrium=deepcopy(one.equilibrium)) for one in kept.bearings)
+    return replace(kept, bearings=bearings, vector=kept.vector.copy())
 
 
 def _seat_alone(scene: Scene, instruction_set: str) -> Seated:
@@ -189,8 +198,6 @@ def _seat_alone(scene: Scene, instruction_set: str) -> Seated:
     said = (pressed_rollers(model, scene, motion, vector), placed_again(model, scene, motion))
     unusual_there = (*unusual(scene, equilibrium), *(text for text in said if text))
     bearing = SeatedBearing("", 0, scene, model, motion, equilibrium, model.state_layout(), unusual_there)
-    for values in (vector, *vars(equilibrium).values()):
-        np.asarray(values).setflags(write=False)
     return Seated((bearing,), vector, scene.start.time)
 
 

@@ -23,7 +23,7 @@ from trbdyn.model.scene import Scene
 from trbdyn.model.start import Start
 from trbdyn.statics.assembly import ShaftEquilibrium, equilibrium
 from trbdyn.statics.free_ring import axis_of
-from trbdyn.statics.seat import KEPT, Seat, Seated, Seating, seat_all, seat_alone
+from trbdyn.statics.seat import KEPT, Seat, Seated, Seating, apart, seat_all, seat_alone
 from trbdyn.statics.shaft_balance import turns_of
 
 Array = NDArray[np.float64]
@@ -44,7 +44,7 @@ seated.register(Seating, seat_all)
 @seated.register(Assembly)
 def _of_assembly(assembly: Assembly, instruction_set: str = "") -> Seated:
     reads = any(assembly.scene(index).modes_from_file for index in range(len(assembly.bearings)))
-    return (_seat_assembly if reads else _kept_assembly)(assembly, instruction_set)
+    return _seat_assembly(assembly, instruction_set) if reads else apart(_kept_assembly(assembly, instruction_set))
 
 
 def _seat_assembly(assembly: Assembly, instruction_set: str) -> Seated:
