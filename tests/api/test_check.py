@@ -132,7 +132,7 @@ def test_the_note_says_how_much_of_a_run_was_repeated(run: trb.Result, monkeypat
     short = trb.check(run, budget_s=0.8 * records)
     assert 0.0 < short.covered < 1.0
     assert f"the first {100.0 * short.covered:.2g} % of the run were repeated" in short.note
-    assert "Not checked: what follows them (a larger budget_s covers more);" in short.note
+    assert "Not checked: what follows them (more time for the check covers more);" in short.note
     assert "the time was too short" in trb.check(run, budget_s=10.0).note
 
 

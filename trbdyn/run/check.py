@@ -244,7 +244,7 @@ class _Checking:
             what = f"the whole run was repeated, {_times(len(samples[0].tight))}"
         elif len(samples) == 1 and samples[0].piece.begin == self.repeating.whole.begin:
             what = f"the first {100.0 * covered:.2g} % of the run were repeated, {_times(len(samples[0].tight))}"
-            unseen = " what follows them (a larger budget_s covers more);"
+            unseen = " what follows them (more time for the check covers more);"
         else:
             count = "one piece was" if len(samples) == 1 else f"{len(samples)} pieces were"
             what = f"{count} repeated from a state of the run, {100.0 * covered:.2g} % of it in all"
