@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import signal
 from types import SimpleNamespace
 
 import numpy as np
@@ -134,6 +135,20 @@ def test_the_note_says_how_much_of_a_run_was_repeated(run: trb.Result, monkeypat
     assert f"the first {100.0 * short.covered:.2g} % of the run were repeated" in short.note
     assert "Not checked: what follows them (more time for the check covers more);" in short.note
     assert "the time was too short" in trb.check(run, budget_s=10.0).note
+
+
+def test_ctrl_c_ends_a_check(run: trb.Result, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is not taken for a repetition whose time is over."""
+    looks = itertools.count()
+
+    def process_time() -> float:
+        if next(looks) == 30:
+            signal.raise_signal(signal.SIGINT)
+        return 0.0
+
+    monkeypatch.setattr("trbdyn.run.repeat.clock", SimpleNamespace(process_time=process_time))
+    with pytest.raises(KeyboardInterrupt):
+        trb.check(run, budget_s=100.0)
 
 
 def test_a_jump_has_a_piece_of_its_own() -> None:

@@ -182,7 +182,8 @@ class _Checking:
         before, first = clock.process_time(), self._once(next(chosen))
         now = clock.process_time()
         if first.tight and (now - before) * length / (first.piece.until - first.piece.begin) <= self.end - now:
-            return self._again(repeating.sample(repeating.whole))
+            whole = self._again(repeating.sample(repeating.whole))
+            return whole if whole[0].tight else [first]
         return self._each(first, now - before, chosen) if repeating.has_states else self._again(first)
 
     def _again(self, sample: Sample) -> list[Sample]:

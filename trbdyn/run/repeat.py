@@ -25,7 +25,7 @@ from trbdyn.results.result import Result
 from trbdyn.run.judged import Piece, Sample, moved, tighter
 from trbdyn.run.options import OF_ONE_RUN, RunOptions
 from trbdyn.run.replay import NEEDED, Replay
-from trbdyn.run.running import Run, output_times
+from trbdyn.run.running import STOPPED, Run, output_times
 from trbdyn.run.simulation import Simulation
 
 STRATA: Final = 8
@@ -169,13 +169,13 @@ class Repeating:
             times = output_times(piece.begin, piece.until, every)
             settings = sim.options.replace(save_every=every, save_groups=self.first.groups)
             try:
-                return (
-                    Run(sim, settings, times, lambda _: clock.process_time() > until, watched=False, look_every=1)
-                    .go(progress=False)
-                    .by_name
-                )
+                run = Run(sim, settings, times, lambda _: clock.process_time() > until, watched=False, look_every=1)
+                found = run.go(progress=False).by_name
             except StepError:
                 return None
+        if next(iter(found.values())).message.startswith(STOPPED):
+            raise KeyboardInterrupt  # a run keeps what it has; a check that is stopped has nothing to say
+        return found
 
     def _numbers(self, parts: Mapping[str, Result], since: float, averaged: float) -> dict[str, float]:
         """Extremes from a time (s) on, and averages from another one on; of several bearings with their names."""
